@@ -39,7 +39,15 @@ def at_the_edge(slopes, speed):
     return 0.6 / (speed + reached), reached
 
 
-METHODS = [(EventDriven(), None), (EventDriven(), 1e-14), (Located(1e-3), 1e-14), (Located(1e-3, 4), 1e-14)]
+PLAIN = [
+    EventDriven(),
+    Located(1e-3),
+    Located(1e-3, 4),
+    Located(1e-2, tolerance=1e-6),
+    Located(1e-2, 4, tolerance=1e-7),
+]
+METHODS = [(method, None) for method in PLAIN]
+METHODS += [(EventDriven(), 1e-14), (Located(1e-3), 1e-14), (Located(1e-3, 4), 1e-14)]
 
 
 @pytest.mark.parametrize(("method", "mu"), METHODS)
@@ -55,11 +63,12 @@ def test_what_slides_over_a_ridge_flies_off(method, mu, slopes):
         assert m.q[-1] == pytest.approx(true, abs=1e-8)
 
 
+@pytest.mark.parametrize("method", PLAIN)
 @pytest.mark.parametrize("slopes", [(-0.4, 0.3), (0.1, 0.8), (-0.9, -0.1)])
-def test_what_slides_into_a_valley_goes_on_up_its_other_side(slopes):
+def test_what_slides_into_a_valley_goes_on_up_its_other_side(slopes, method):
     """Its gap velocity before is zero, and does not rebound: what is left is the velocity along the other slope."""
     for speed in (3.0, 3.3, 3.7):
-        m = simulate(sliding(slopes, speed), EventDriven(), keep=[0.15])
+        m = simulate(sliding(slopes, speed), method, keep=[0.15])
         time, reached = at_the_edge(slopes, speed)
         onward = reached * (1.0 + slopes[0] * slopes[1]) / (1.0 + slopes[1] ** 2)
         later, pull = 0.15 - time, -9.81 * slopes[1] / (1.0 + slopes[1] ** 2)

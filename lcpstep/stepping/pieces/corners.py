@@ -72,6 +72,8 @@ def go_beyond(m: Model, plan: Plan, w: Work, t: float) -> None:
         some = some or abs(jump) > JUMP * size
     if some:
         copy(w.q, w.q_try, w.n_q)
+        copy(w.G, w.G_try, w.n_c * w.n_q)
+        copy(w.gap_t, w.gap_t_try, w.n_c)
 
 
 def choose_jumping(m: Model, plan: Plan, w: Work, t: float) -> int:

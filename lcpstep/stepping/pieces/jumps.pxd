@@ -1,10 +1,12 @@
 cimport cython
+from lcpstep.kernels.model cimport Model
 from lcpstep.stepping.pieces.loop cimport Steps
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
 cdef double BRIEF, SIDES
 
 cdef bint breaks(Steps way, Work w, double t, double length) noexcept nogil
+cdef double place_of(Model m, Work w, double t) noexcept nogil
 @cython.locals(found=Py_ssize_t)
 cdef Py_ssize_t farthest_off(Steps way, Work w, double t, double length) noexcept nogil
 cdef void measure_rows(Steps way, Work w, double t, double tau) noexcept nogil

@@ -12,8 +12,9 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gap_rates
+    from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import Doubles, abs, after, max
+    from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED
     from lcpstep.stepping.pieces.corners import JUMP
     from lcpstep.stepping.pieces.loop import Steps
@@ -36,11 +37,7 @@ def breaks(way: Steps, w: Work, t: float, length: float) -> bool:
     while w.sudden.seek(t):
         measure_rows(way, w, t, w.sudden.x)
         w.sudden.take(velocity(w, i))
-    place, margin = t + w.sudden.high, way.plan.margin
-    if (
-        not way.m.flat
-    ):  # where rows are still those before it, onto which the motion is put, however the sum is rounded
-        place = t + w.sudden.low - 2.0 * RESOLUTION * (abs(t) + w.sudden.low)
+    place, margin = place_of(way.m, w, t), way.plan.margin
     if w.sudden.is_turn():
         place, margin = t + 0.5 * (w.sudden.low + w.sudden.high), SIDES * (w.sudden.high - w.sudden.low)
     if w.sudden.is_jump() and margin <= BRIEF * length and lies_apart(w, place, margin):
@@ -51,15 +48,31 @@ def breaks(way: Steps, w: Work, t: float, length: float) -> bool:
     return False
 
 
+def place_of(m: Model, w: Work, t: float) -> float:
+    """The time of the jump that was sought from t on: just after it, as times within the interval are before it.
+
+    Where rows may jump by the place it is just before it, however sums are rounded: motion is put onto the rows at
+    the end of the piece, which still have to be the old ones.
+    """
+    if m.flat:
+        return t + w.sudden.high
+    rounding = 2.0 * RESOLUTION * (abs(t) + w.sudden.low)
+    place = t + w.sudden.low - rounding
+    return (
+        min(place, w.high - 2.0 * rounding) if w.high == w.jump else place
+    )  # a piece that has ended beyond it
+
+
 def farthest_off(way: Steps, w: Work, t: float, length: float) -> int:
     """The row whose velocity changes most within the piece, beyond errors and rounding, where none should; or -1.
 
     Rows are the contacts, of which the closed ones count where not all are told, and joints that are driven.
     """
     found, most, largest = -1, 1.0, 0.0
-    measure_rows(way, w, t, 0.0)
+    if way.told or way.n_rows > w.n_c:  # else what counts is closed, and has none where the piece begins
+        measure_rows(way, w, t, 0.0)
     for i in range(way.n_rows):
-        w.begins[i] = velocity(w, i)
+        w.begins[i] = velocity(w, i) if way.told or way.n_rows > w.n_c else 0.0
     measure_rows(way, w, t, length)
     for i in range(way.n_rows):
         if i >= w.n_c or w.status[i] == CLOSED or way.told:

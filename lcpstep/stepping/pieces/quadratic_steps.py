@@ -37,6 +37,7 @@ class QuadraticSteps(Steps):
 
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
         super().__init__(m, plan, w, record)
+        self.watched = self.watched or not m.flat  # rows may jump by the place
         self.told, self.asking = m.flat, self.watched and (not m.flat or self.n_rows > w.n_c)
         self.gliding = plan.trapezoidal and m.flat and m.n_c <= 1 and m.n_q == 1
 
