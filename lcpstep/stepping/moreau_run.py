@@ -191,16 +191,16 @@ def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool
     """
     M, C, K, G = m.arrays["M"], m.arrays["C"], m.arrays["K"], m.arrays["G"]
     if is_stiff(m):
-        A_inverse = inverse(M + h * theta * C + (h * theta) ** 2 * K)
-        A_f: Any = h * A_inverse
-        A_q, A_v = A_f @ K, A_inverse @ (h * C + h * h * theta * K)
+        A_inverse: Any = inverse(M + h * theta * C + (h * theta) ** 2 * K)
+        A_f = h * A_inverse
+        A_q, A_v = A_f.dot(K), A_inverse.dot(h * C + h * h * theta * K)
     else:
         A_inverse = m.arrays["M_inverse"] if m.linear else np.zeros(M.shape)
         A_f = h * A_inverse
         A_q = A_v = np.zeros(M.shape)
     if c.n == m.n_c:
-        A_g = A_inverse @ G.T
-        X, W = A_g.T, G @ A_g
+        A_g = A_inverse.dot(G.T)  # of small matrices a third of the time of `@`
+        X, W = A_g.T, G.dot(A_g)
     else:
         X, W = np.zeros((c.n, m.n_q)), np.zeros((c.n, c.n))
     return Plan(h, theta, slack, constant, {"A_q": A_q, "A_v": A_v, "A_f": A_f, "X": X, "W": W})

@@ -14,7 +14,7 @@ from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.looks import all_finite
 from lcpstep.model import joint_model, model
-from lcpstep.recording import FIRST, Kept, Recorder, States
+from lcpstep.recording import SPARE, Kept, Recorder, States
 from lcpstep.stepping import adaptive
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.stepping.located_by_tolerance import Attempts
@@ -45,7 +45,7 @@ class LocatedRun(StepRun):
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p, joints)
         steps = kept.of_steps(number(scene.t_span, method.h)) if method.tolerance is None else None
-        expected = None if steps is None else steps + steps // 16 + FIRST  # and events
+        expected = None if steps is None else steps + steps // 16 + SPARE  # and events
         recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, expected=expected)
         super().__init__(method, scene, kept, recorder, PORTION)
         kind = QuadraticSteps if method.order == 2 else PolynomialSteps
