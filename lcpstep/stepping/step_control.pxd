@@ -2,14 +2,14 @@ cimport cython
 from lcpstep.kernels.course cimport Course
 from lcpstep.kernels.record cimport Record
 
-cdef Py_ssize_t LEVELS, ROWS, REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP
+cdef Py_ssize_t LEVELS, ROWS, REACHED, PAUSED, TOO_SMALL, WANTED, ACCEPTED, AGAIN, GIVEN_UP, JUMPS
 cdef double NOISE, LATE, PLENTY, LEAST_SHARE, FLAT
 
 
 cdef class Control(Course):
     cdef Record record
     cdef object make, matrices, own_made
-    cdef Py_ssize_t n_times, row, event, asked
+    cdef Py_ssize_t n_times, row, event, asked, jumped
     cdef Py_ssize_t* made
     cdef public long long position, until, end, tried
     cdef public int level, finest

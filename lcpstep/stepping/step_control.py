@@ -39,6 +39,7 @@ ROWS = 8  # that a step may keep besides the times asked for
 LEAST_SHARE = 1e-3  # of the tolerance, in steps with events
 LATE = 2.0 * RESOLUTION  # of a time: no shorter step shows less than what that makes of a motion
 FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
+JUMPS = 16  # steps in a row that may hold one each: more of them have errors that no step is short enough for
 
 
 class Control(Course):
@@ -54,6 +55,7 @@ class Control(Course):
     enough               share of the error allowed, below which twice the step is tried
     size_q, size_v       of the motion so far
     last, until          error of the last attempt that failed, and its end in finest steps
+    jumped               steps up to here that held a jump, in a row
     into                 how far beyond `position` an event has cut the step [s]
     row, event, asked    rows and events written, and states asked for that were kept, where the step begins
 
@@ -83,7 +85,7 @@ class Control(Course):
         self.matrices: dict[str, Any] = {}
         self.own_made = np.zeros(LEVELS + 2, dtype=np.intp)
         self.made = indices(self.own_made)
-        self.position, self.until, self.tried = 0, 0, 0
+        self.position, self.until, self.tried, self.jumped = 0, 0, 0, 0
         self.h_max, self.end, self.finest, self.level = sizes(span, h)
         self.start, self.stop, self.span = start, end, end - start
         self.tolerance, self.enough = tolerance, PLENTY * 0.5**order
@@ -194,11 +196,9 @@ class Control(Course):
         late = LATE * abs(self.now())
         wrong_q, wrong_v = self.apart_q - late * self.far_v, self.apart_v - late * self.rate
         error = max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v)) - noise
-        allowed = (min(self.cut, h) - self.into) / self.span
-        jumps = self.position < self.until and FLAT * error > self.last
-        if self.happened or jumps:
-            allowed = max(allowed, LEAST_SHARE)
-        allowed *= self.tolerance
+        share = (min(self.cut, h) - self.into) / self.span
+        jumps = self.position < self.until and FLAT * error > self.last and self.jumped < JUMPS
+        allowed = self.tolerance * (max(share, LEAST_SHARE) if self.happened or jumps else share)
         if self.tolerance < NOISE or self.hopeless:  # no step is that good
             return GIVEN_UP
         if self.failed or not error <= allowed:
@@ -210,6 +210,7 @@ class Control(Course):
             self.pass_by(0.0)
             return AGAIN
         self.size_q, self.size_v = size_q, size_v
+        self.jumped = self.jumped + 1 if jumps and error > self.tolerance * share else 0
         if self.pass_by(self.cut):
             return ACCEPTED
         if level > 0 and self.position % self.length(level - 1) == 0 and error <= self.enough * allowed:
