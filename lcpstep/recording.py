@@ -7,6 +7,7 @@ and empties the log.
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -95,7 +96,7 @@ def in_order(events: Array, end: float) -> Array:
     return ordered[np.argsort(ordered[:, 0], kind="stable")]
 
 
-def buffer(name: str, rows: int, columns: int) -> Array:
+def buffer(rows: int, columns: int) -> Array:
     """Room for rows of numbers, whatever they are: that of the last run of this thread where no array is left of it.
 
     New memory comes cleared from the system, page by page, which takes longer than a short run.
@@ -103,10 +104,10 @@ def buffer(name: str, rows: int, columns: int) -> Array:
     n = rows * columns
     if n > LONGEST:
         return np.empty((rows, columns))
-    room = getattr(BUFFERS, name, None)
+    room = getattr(BUFFERS, "lines", None)
     if room is None or len(room) < 8 * n or in_use(room):
         room = bytearray(8 * n)
-        setattr(BUFFERS, name, room)
+        BUFFERS.lines = room
     return np.asarray(memoryview(room)[: 8 * n].cast("d")).reshape(rows, columns)
 
 
@@ -160,7 +161,7 @@ class Recorder:
     ) -> None:
         from lcpstep.kernels.record import Record
 
-        self.lines = buffer("lines", EVENT_CAPACITY + 4 * n_c, COLUMNS)  # what is read has been written
+        self.lines = buffer(EVENT_CAPACITY + 4 * n_c, COLUMNS)  # what is read has been written
         self.record = Record(n_q, n_c, kept.every, kept.on_events, kept.times, self.lines)
         self.taken = 0
         self._dense_shape = dense_shape
@@ -202,20 +203,20 @@ class Recorder:
         self.record.row = k + 1
         self.take()
 
-    def _written(self) -> list[Array]:
-        """What has been written of each array; of those that are mostly empty copies."""
+    def _written(self, columns: Iterable[Array]) -> list[Array]:
+        """What has been written of arrays; of those that are mostly empty copies."""
         n = self.record.row
-        written = [x[:n] for x in self._columns]
+        written = [x[:n] for x in columns]
         return written if 2 * n + 4 * SPARE > self.record.row_capacity else [x.copy() for x in written]
 
     def states(self) -> States:
         """All states kept so far."""
-        t, mode, length, q, v, impulse, _ = self._written()
+        t, mode, length, q, v, impulse = self._written(self._columns[:-1])
         return States(t, q, v, impulse, mode, length)
 
     def dense(self) -> Array:
         """Dense output of the steps after the kept states, zero where none has followed."""
-        _, _, length, *_, dense = self._written()
+        (dense,), length = self._written(self._columns[-1:]), self._columns[2]
         dense[length[: len(dense)] == 0.0] = 0.0
         return dense
 

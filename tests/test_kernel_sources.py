@@ -180,6 +180,6 @@ class Piece:
 @pytest.mark.parametrize("t", [-1.0, 0.0, 0.2, 0.2 + 1e-9, 0.5, 0.7 - 2e-9, 0.7 - 1e-10, 0.7, 1e9])
 def test_times_are_the_same_in_both_files(t):
     piece, other = Piece(), as_python(times.__name__)
-    assert times.within(piece, piece, t) == other["within"](piece, piece, t)
+    assert times.within(piece, t) == other["within"](piece, t)
     assert times.at_corner(piece, piece, t) == other["at_corner"](piece, piece, t)
     assert times.just_after(piece, t) == other["just_after"](piece, t)

@@ -10,6 +10,8 @@ cdef class Sudden:
     @cython.locals(narrow=bint)
     cdef bint seek(self, double t) noexcept nogil
     cdef void take(self, double f) noexcept nogil
+    cdef double untold(self, double t) noexcept nogil
+    cdef double just_before(self, double t) noexcept nogil
     cdef bint is_turn(self) noexcept nogil
     cdef bint is_jump(self) noexcept nogil
     cdef void excuse(self, double u) noexcept nogil

@@ -59,6 +59,17 @@ class Sudden:
         else:
             self.low, self.before = self.x, f
 
+    def untold(self, t: float) -> float:
+        """What rounding may make of the time of the lower place, from the begin t on."""
+        return 2.0 * RESOLUTION * (abs(t) + self.low)
+
+    def just_before(self, t: float) -> float:
+        """The time just before the jump, however the sum with the begin t is rounded.
+
+        Where rows jump they are still the old ones there, onto which the motion is put.
+        """
+        return t + self.low - self.untold(t)
+
     def is_turn(self) -> bool:
         """Whether the places still have something of the change between them that halving takes apart."""
         return abs(self.later - self.before) < SHARE * self.whole

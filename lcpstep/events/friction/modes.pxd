@@ -31,5 +31,6 @@ cdef Py_ssize_t adopt_modes(Rubbing s) noexcept nogil
 cdef void take_over(Rubbing s) noexcept nogil
 cdef void stand_alone(Rubbing s) noexcept nogil
 cdef bint is_carried(Rubbing s, Py_ssize_t i) noexcept nogil
+cdef double gives(Rubbing s, Py_ssize_t i) noexcept nogil
 @cython.locals(stands=bint)
 cdef bint stand(Rubbing s) noexcept nogil

@@ -255,11 +255,15 @@ def stand_alone(s: Rubbing) -> None:
 
 def is_carried(s: Rubbing, i: int) -> bool:
     """Whether row i depends on the rows held: what moves it alone does not, once these are kept."""
-    a, still = s.dv, s.shifted_rate
-    copy(a, after(s.MR, i * s.n_q), s.n_q)
-    clear(still, s.n_r)
-    constrain(s.rows, a, still)
-    return abs(product(s.R, a, i, s.n_q)) <= EDGE * s.W[i * s.n_r + i]
+    return abs(gives(s, i)) <= EDGE * s.W[i * s.n_r + i]
+
+
+def gives(s: Rubbing, i: int) -> float:
+    """What an impulse along row i makes of its velocity once the rows held are kept, and of all, into `dv`."""
+    copy(s.dv, after(s.MR, i * s.n_q), s.n_q)
+    clear(s.shifted_rate, s.n_r)
+    constrain(s.rows, s.dv, s.shifted_rate)
+    return product(s.R, s.dv, i, s.n_q)
 
 
 def stand(s: Rubbing) -> bool:

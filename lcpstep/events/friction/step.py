@@ -16,18 +16,17 @@ if not cython.compiled:
     from lcpstep.events.friction.held import hold_modes, right_hand_side
     from lcpstep.events.friction.impact import forget_terms, still
     from lcpstep.events.friction.keep import keep
-    from lcpstep.events.friction.modes import decide, undecided
+    from lcpstep.events.friction.modes import decide, gives, undecided
     from lcpstep.events.friction.moments import jumps, locate, of_sliding, turns_at_once
     from lcpstep.events.friction.parting import part_before
     from lcpstep.events.friction.state import GUARDS, Rubbing
     from lcpstep.events.friction.surfaces import find_touching, lift
-    from lcpstep.events.rows.held import constrain
     from lcpstep.events.rows.jumps import breaks
     from lcpstep.events.rows.projection import project
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import clear, copy, product
-    from lcpstep.pointers import abs, after, min
+    from lcpstep.pointers import abs, min
 
 # Of a step: where the forces after a release, or a slip, are looked at, how much further while they are zero, and how
 # far at most
@@ -160,16 +159,13 @@ def stop_with(s: Rubbing, c: int) -> None:
     Feet of one body stop together, and the ends of a rod: a step is only as exact as its order, and what of one
     velocity it has left, it has of the others.
     """
-    i, a = s.n_j + s.n_c + c, s.dv
-    copy(a, after(s.MR, i * s.n_q), s.n_q)
-    clear(s.shifted_rate, s.n_r)
-    constrain(s.rows, a, s.shifted_rate)
-    own = product(s.R, a, i, s.n_q)
+    i = s.n_j + s.n_c + c
+    own = gives(s, i)
     if not own > EDGE * s.W[i * s.n_r + i]:
         return
     for d in range(s.n_c):
         k = s.n_j + s.n_c + d
-        with_it = s.velocity[i] * product(s.R, a, k, s.n_q) / own
+        with_it = s.velocity[i] * product(s.R, s.dv, k, s.n_q) / own
         if abs(s.velocity[k] - with_it) <= still(s, k) + EDGE * abs(with_it):
             s.free[d] = 1
 

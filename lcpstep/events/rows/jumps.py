@@ -13,7 +13,7 @@ if not cython.compiled:
     from lcpstep.events.rows.equations import JUMPS, least_effect, list_gaps, measure_rates, size_of
     from lcpstep.events.rows.held import constrain, hold_joints
     from lcpstep.events.rows.state import Rows
-    from lcpstep.kernels.clock import NUDGE, RESOLUTION
+    from lcpstep.kernels.clock import NUDGE
     from lcpstep.kernels.rungekutta import RungeKutta
     from lcpstep.kernels.sudden import MORE, SUDDEN
     from lcpstep.kernels.vectors import product
@@ -142,8 +142,7 @@ def find_jump(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
         if not motion.step(t0, s.sudden.x):
             break
         s.sudden.take(velocity(s, i, t0 + s.sudden.x, motion.y_new))
-    # where rows are still those before it, onto which the motion is put, however the sum is rounded
-    t = t0 + s.sudden.low - 2.0 * RESOLUTION * (abs(t0) + s.sudden.low)
+    t = s.sudden.just_before(t0)
     if s.sudden.is_jump() and s.lies_apart(t):
         s.break_at(t)
         return True

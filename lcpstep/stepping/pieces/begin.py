@@ -26,24 +26,24 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
     w.margin = plan.margin
     w.fresh = True
     if w.joined:  # what rounding has put speeds as small off them by would let no impulse do
-        if not refactor(m, w, within(plan, w, t)):
+        if not refactor(m, w, within(w, t)):
             return NOT_FINITE
         turn_onto_joints(w, w.v)
     if plan.trapezoidal:
-        external_force(m, within(plan, w, t), w.q, w.v, w.force)
-    elif not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
+        external_force(m, within(w, t), w.q, w.v, w.force)
+    elif not free_acceleration(m, w, within(w, t), w.q, w.v, w.free):
         return NOT_FINITE
     w.force_evaluations += 1
     if plan.steady:
         for i in range(w.n_q):
             w.free[i] = product(plan.A_inverse, w.force, i, w.n_q)
-    measure(m, plan, w, t)
+    measure(m, w, t)
     if plan.constant:
         respond(m, w)
         for c in range(w.n_c):
             w.alpha[c] = product(m.G, w.free, c, w.n_q)
     if not plan.plain and touching(plan, w):
-        gap_bias(m, w, within(plan, w, t), w.q, w.v)
+        gap_bias(m, w, within(w, t), w.q, w.v)
     for c in range(w.n_c):
         if w.gap[c] <= plan.slack:
             w.gap[c], w.grounded[c] = 0.0, GROUND

@@ -54,12 +54,12 @@ def obstacles_move(m: Model) -> bool:
     return (m.flat and moves(m)) or (not m.flat and m.gap_t.given)
 
 
-def go_beyond(m: Model, plan: Plan, w: Work, t: float) -> None:
+def go_beyond(m: Model, w: Work, t: float) -> None:
     """At a corner that was found, move coordinates to its far side where rows jump by the place.
 
     They go what they go in the time to which the time of a jump is known.
     """
-    at, some = within(plan, w, t), False
+    at, some = within(w, t), False
     for i in range(w.n_q):
         w.q_try[i] = w.q[i] + 4.0 * w.margin * w.v[i]
     gap_rates(m, at, w.q, w.v, w.G, w.gap_t)
@@ -78,7 +78,7 @@ def go_beyond(m: Model, plan: Plan, w: Work, t: float) -> None:
 
 def choose_jumping(m: Model, plan: Plan, w: Work, t: float) -> int:
     """Gap velocities after the corner; which contacts it strikes. Speeds that do not jump keep their digits."""
-    gap_rates(m, within(plan, w, t), w.q, w.v, w.G, w.gap_t)
+    gap_rates(m, within(w, t), w.q, w.v, w.G, w.gap_t)
     n_s = 0
     for c in range(w.n_c):
         before, later = w.rate[c], product(w.G, w.v, c, w.n_q) + w.gap_t[c]

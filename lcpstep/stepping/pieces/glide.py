@@ -34,7 +34,7 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
     if contact:
         g, u, bent, G, offset = w.gap[0], w.rate[0], w.half[0], m.G[0], m.offset[0]
         if moving:
-            obstacle(m, within(plan, w, t0 + h * (w.steps - first)), w.q, w.v)
+            obstacle(m, within(w, t0 + h * (w.steps - first)), w.q, w.v)
             s = m.motion_now[2]
     kept = record.last_time()
     k = start = w.steps
@@ -44,7 +44,7 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
         t = t0 + h * (k - first) + h
         if t > w.high:
             break
-        inner = within(plan, w, t)
+        inner = within(w, t)
         external_force(m, inner, w.q, w.v, w.next_force)
         f_next = w.next_force[0]
         a = A_inverse * (0.5 * (f + f_next) - (C * v + K * (q + 0.5 * h * v)))

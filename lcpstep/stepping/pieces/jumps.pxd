@@ -7,7 +7,7 @@ cdef double BRIEF, SIDES
 
 cdef bint breaks(Steps way, Work w, double t, double length) noexcept nogil
 cdef double place_of(Model m, Work w, double t) noexcept nogil
-@cython.locals(found=Py_ssize_t)
+@cython.locals(found=Py_ssize_t, moving=bint)
 cdef Py_ssize_t farthest_off(Steps way, Work w, double t, double length) noexcept nogil
 cdef void measure_rows(Steps way, Work w, double t, double tau) noexcept nogil
 cdef double* row(Work w, Py_ssize_t i) noexcept nogil

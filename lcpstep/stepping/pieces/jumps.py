@@ -10,7 +10,6 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import product
@@ -51,16 +50,14 @@ def breaks(way: Steps, w: Work, t: float, length: float) -> bool:
 def place_of(m: Model, w: Work, t: float) -> float:
     """The time of the jump that was sought from t on: just after it, as times within the interval are before it.
 
-    Where rows may jump by the place it is just before it, however sums are rounded: motion is put onto the rows at
-    the end of the piece, which still have to be the old ones.
+    Where rows may jump by the place it is just before it.
     """
     if m.flat:
         return t + w.sudden.high
-    rounding = 2.0 * RESOLUTION * (abs(t) + w.sudden.low)
-    place = t + w.sudden.low - rounding
-    return (
-        min(place, w.high - 2.0 * rounding) if w.high == w.jump else place
-    )  # a piece that has ended beyond it
+    place = w.sudden.just_before(t)
+    if w.high == w.jump:  # a piece that has ended beyond it
+        place = min(place, w.high - 2.0 * w.sudden.untold(t))
+    return place
 
 
 def farthest_off(way: Steps, w: Work, t: float, length: float) -> int:
@@ -69,10 +66,11 @@ def farthest_off(way: Steps, w: Work, t: float, length: float) -> int:
     Rows are the contacts, of which the closed ones count where not all are told, and joints that are driven.
     """
     found, most, largest = -1, 1.0, 0.0
-    if way.told or way.n_rows > w.n_c:  # else what counts is closed, and has none where the piece begins
+    moving = way.told or way.n_rows > w.n_c  # else what counts is closed, and has none where the piece begins
+    if moving:
         measure_rows(way, w, t, 0.0)
     for i in range(way.n_rows):
-        w.begins[i] = velocity(w, i) if way.told or way.n_rows > w.n_c else 0.0
+        w.begins[i] = velocity(w, i) if moving else 0.0
     measure_rows(way, w, t, length)
     for i in range(way.n_rows):
         if i >= w.n_c or w.status[i] == CLOSED or way.told:
@@ -88,7 +86,7 @@ def farthest_off(way: Steps, w: Work, t: float, length: float) -> int:
 
 def measure_rows(way: Steps, w: Work, t: float, tau: float) -> None:
     """State, Jacobians and rates of contacts and joints at tau after the base t of the piece at hand."""
-    at = within(way.plan, w, t + tau)
+    at = within(w, t + tau)
     way.measure_at(at, tau)
     if way.n_rows > w.n_c:
         gap_rates(w.joints.rows, at, w.q_try, w.v_try, w.joints.J_try, w.joints.stretch)

@@ -65,7 +65,7 @@ def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau
     for c in range(n_c):
         w.impulse[c] += (1.0 - share) * w.residual[c]
     if not plan.constant:  # `settle_state` has looked elsewhere
-        gap_rates(m, within(plan, w, base + tau), w.q, w.v, w.G, w.gap_t)
+        gap_rates(m, within(w, base + tau), w.q, w.v, w.G, w.gap_t)
         refactor(m, w, base + tau)
 
 

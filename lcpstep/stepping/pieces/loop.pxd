@@ -24,6 +24,7 @@ cdef class Steps(Stepwise):
     cdef Py_ssize_t piece(self, double t) noexcept nogil
     @cython.locals(pausing=bint)
     cdef Py_ssize_t struck(self, double t, Py_ssize_t c) noexcept nogil
+    @cython.locals(jumps=bint)
     cdef Py_ssize_t begin_interval(self, double t) noexcept nogil
     cdef void end_interval(self, double t) noexcept nogil
     cdef Py_ssize_t cut(self, double t) noexcept nogil

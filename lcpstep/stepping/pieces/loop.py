@@ -46,7 +46,7 @@ class Steps(Stepwise):
     found    whose event ends it, or NOBODY,
     ends     and whether it ends with the smooth interval
     gliding  whether one linear degree of freedom goes on in registers while nothing happens
-    watched  whether obstacles or joints have a velocity of their own, which may jump (`jumps`),
+    watched  whether obstacles or joints have a velocity of their own, which may jump (`jumps`), or rows by the place,
     asking   and pieces are looked at for that whatever `next_forces` tells
     n_rows   contacts, and joints that are driven
     told     whether open contacts have nothing but what jumps in the velocities of `measure_at` either
@@ -64,7 +64,8 @@ class Steps(Stepwise):
         self.gliding = self.ends = False
         self.tau, self.found, self.stop, self.own = 0.0, NOBODY, inf, 0
         driven = w.joined and obstacles_move(w.joints.rows)
-        self.watched, self.n_rows = driven or obstacles_move(m), w.n_c + (w.n_j if driven else 0)
+        self.watched = driven or obstacles_move(m) or not m.flat
+        self.n_rows = w.n_c + (w.n_j if driven else 0)
         self.asking, self.told = self.watched, False
 
     def begin(self, t: float) -> int:
@@ -163,10 +164,11 @@ class Steps(Stepwise):
             self.w.low, self.w.high = find_corners(self.plan, self.w, now)
             if self.w.jump not in (self.w.low, self.w.high):
                 self.w.margin = self.plan.margin
-            if obstacles_move(self.m) or self.plan.joined or self.w.low == self.w.jump:
+            jumps = self.w.low == self.w.jump
+            if jumps or obstacles_move(self.m) or self.plan.joined:
                 self.found = CORNER
-            if self.w.low == self.w.jump and not self.m.flat:
-                go_beyond(self.m, self.plan, self.w, now)
+            if jumps and not self.m.flat:
+                go_beyond(self.m, self.w, now)
             if not self.pass_corner(now):
                 return NOT_FINITE
         self.end_interval(t)

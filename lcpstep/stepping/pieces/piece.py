@@ -69,7 +69,7 @@ def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool
     if m.flat:
         flat_accelerations(m, plan, w, t)
     elif needs_bias(plan, w):
-        gap_bias(m, w, within(plan, w, t), w.q, w.v)
+        gap_bias(m, w, within(w, t), w.q, w.v)
         for c in range(n_c):
             w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
     if closed and not plan.constant:
@@ -77,7 +77,7 @@ def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool
             return False
         respond(m, w)
         if w.joined:
-            turn_accelerations(w, within(plan, w, t))
+            turn_accelerations(w, within(w, t))
     if not hold(m, plan, w, record, place, t):
         return False
     if plan.constant:
@@ -106,7 +106,7 @@ def flat_accelerations(m: Model, plan: Plan, w: Work, t: float) -> None:
         for c in range(w.n_c):
             w.alpha[c] = product(m.G, w.free, c, w.n_q)
     if moves(m):
-        obstacle(m, within(plan, w, t), w.q, w.v)
+        obstacle(m, within(w, t), w.q, w.v)
         for c in range(w.n_c):
             s, s_end = m.motion_now[c * 3 + 2], w.end_s[c]
             w.alpha[c] -= 0.5 * (s + s_end)
@@ -241,7 +241,7 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
         remember(w)
     taken = False
     if tau > 0.0:
-        if not advance(m, plan, w, within(plan, w, now), tau):
+        if not advance(m, plan, w, within(w, now), tau):
             return NOT_FINITE
         if not (plan.plain or plan.trapezoidal):
             taken = take_back(plan, w, record, now + tau)
@@ -265,7 +265,7 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
                 copy(w.q_try, w.q, w.n_q)
                 put_on_surface(m, plan, w, now + tau)
                 w.off = distance(w.q, w.q_try, w.n_q)
-            measure(m, plan, w, now + tau)
+            measure(m, w, now + tau)
     if wanted and not plan.plain:
         keep_between(m, plan, w, record, now, tau, end)
     if w.joined:

@@ -20,7 +20,7 @@ cdef class Polynomial:
 
 cdef bint on_surface(Plan plan, Work w) noexcept nogil
 cdef bint acceleration(Model m, Plan plan, Work w, double t, double* q, double* v, double* out) noexcept nogil
-cdef void biases(Model m, Plan plan, Work w, double t, double* q, double* v) noexcept nogil
+cdef void biases(Model m, Work w, double t, double* q, double* v) noexcept nogil
 cdef bint constrained(Model m, Plan plan, Work w, double t, double* q, double* v, double* out) noexcept nogil
 cdef void factor_closed(Work w) noexcept nogil
 cdef void press(Work w, double* out, double share) noexcept nogil
@@ -31,7 +31,7 @@ cdef bint taylor(Model m, Plan plan, Work w, Polynomial z, double t) noexcept no
 @cython.locals(good=bint)
 cdef bint hermite(Model m, Plan plan, Work w, Polynomial z, double t, double L) noexcept nogil
 cdef void state_at(Model m, Plan plan, Work w, Polynomial z, double t, double tau) noexcept nogil
-cdef void surface_state(Model m, Plan plan, Work w, Polynomial z, double t) noexcept nogil
+cdef void surface_state(Model m, Work w, Polynomial z, double t) noexcept nogil
 cdef void contacts_at(
     Model m, Plan plan, Work w, Polynomial z, double t, double tau, double* g, double* u
 ) noexcept nogil

@@ -78,13 +78,13 @@ def acceleration(m: Model, plan: Plan, w: Work, t: float, q: Doubles, v: Doubles
     """Acceleration with the forces of closed contacts, if there are any; False where a matrix fails."""
     w.force_evaluations += 1
     if w.closed_now == 0:
-        return free_acceleration(m, w, within(plan, w, t), q, v, out)
+        return free_acceleration(m, w, within(w, t), q, v, out)
     return constrained(m, plan, w, t, q, v, out)
 
 
-def biases(m: Model, plan: Plan, w: Work, t: float, q: Doubles, v: Doubles) -> None:
+def biases(m: Model, w: Work, t: float, q: Doubles, v: Doubles) -> None:
     """Gap accelerations at v' = 0, into w.bias."""
-    inner = within(plan, w, t)
+    inner = within(w, t)
     if not m.flat:
         gap_bias(m, w, inner, q, v)
         return
@@ -95,10 +95,10 @@ def biases(m: Model, plan: Plan, w: Work, t: float, q: Doubles, v: Doubles) -> N
 
 def constrained(m: Model, plan: Plan, w: Work, t: float, q: Doubles, v: Doubles, out: Doubles) -> bool:
     """Acceleration with the forces of closed contacts, which go to w.p; False where a matrix fails."""
-    if not free_acceleration(m, w, within(plan, w, t), q, v, out):
+    if not free_acceleration(m, w, within(w, t), q, v, out):
         return False
     gap_rates(m, t, q, v, w.G, w.gap_t)
-    biases(m, plan, w, t, q, v)
+    biases(m, w, t, q, v)
     if not plan.constant:
         respond(m, w)
     for c in range(w.n_c):
@@ -245,7 +245,7 @@ def state_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float)
     """State at tau after the base t of the piece, into z.q and z.v."""
     n = w.n_q
     if on_surface(plan, w):
-        surface_state(m, plan, w, z, t + tau)
+        surface_state(m, w, z, t + tau)
         return
     s = tau / z.scale
     for i in range(n):
@@ -261,9 +261,9 @@ def state_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float)
             z.v[i] -= m.frame_now[3 * i + 1]
 
 
-def surface_state(m: Model, plan: Plan, w: Work, z: Polynomial, t: float) -> None:
+def surface_state(m: Model, w: Work, z: Polynomial, t: float) -> None:
     """State of the one coordinate on its obstacle; at a corner with the velocity on the near side."""
-    inner = within(plan, w, t)
+    inner = within(w, t)
     for c in range(w.n_c):
         if w.status[c] == CLOSED:
             obstacle(m, t, w.q, w.v)

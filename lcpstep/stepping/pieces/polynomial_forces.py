@@ -37,7 +37,7 @@ def load(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float,
     if undecided:
         w.ahead = SOON * length
         return look_ahead(m, plan, w, z, record, t, w.ahead)
-    if not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
+    if not free_acceleration(m, w, within(w, t), w.q, w.v, w.free):
         return False
     needed = w.closed_now > 0 or w.touching
     for c in range(n_c):
@@ -60,7 +60,7 @@ def look_ahead(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: 
         q[i] = w.q[i] + ahead * (w.v[i] + 0.5 * ahead * w.a[i])
         v[i] = w.v[i] + ahead * w.a[i]
     later = t + ahead
-    if not free_acceleration(m, w, within(plan, w, later), q, v, w.free):
+    if not free_acceleration(m, w, within(w, later), q, v, w.free):
         return False
     w.touching = True
     for c in range(w.n_c):
@@ -81,7 +81,7 @@ def decide(
     """Which contacts are closed from t on, by the accelerations at a state; these without contact are at hand."""
     n_c, before = w.n_c, record.event
     gap_rates(m, at, q, v, w.G, w.gap_t)
-    biases(m, plan, w, at, q, v)
+    biases(m, w, at, q, v)
     for c in range(n_c):
         w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
     if (w.closed_now > 0 or w.touching) and not plan.constant:

@@ -75,7 +75,6 @@ class PolynomialSteps(Steps):
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
         super().__init__(m, plan, w, record)
         self.z, self.opens = Polynomial(m.n_q, m.n_c), False
-        self.watched = self.watched or not m.flat  # rows may jump by the place
 
     def begin_piece(self, t: float) -> int:
         """Accelerations, and which contacts are closed."""
@@ -186,7 +185,7 @@ def follow(
     for c in range(w.n_c):
         w.grounded[c] = 0
         z.gap_to[c] = carried(m, plan, w, z, now, tau, c)
-    measure(m, plan, w, now + tau)
+    measure(m, w, now + tau)
     if not on_surface(plan, w) and (w.closed_now > 0 or penetrates(plan, w)):
         if not plan.constant:
             if not refactor(m, w, now + tau):
@@ -194,8 +193,8 @@ def follow(
             respond(m, w)
         put_on_surface(m, plan, w, now + tau)
         w.off = distance(w.q, z.q, w.n_q)
-        slide(m, w, within(plan, w, now + tau))
-        measure(m, plan, w, now + tau)
+        slide(m, w, within(w, now + tau))
+        measure(m, w, now + tau)
     for c in range(w.n_c):
         if z.gap_to[c] > plan.slack:
             w.gap[c] = z.gap_to[c]
@@ -236,7 +235,7 @@ def touch(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
     if not acceleration(m, plan, w, t, w.q, w.v, w.a):
         return NOT_FINITE
     gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
-    biases(m, plan, w, t, w.q, w.v)
+    biases(m, w, t, w.q, w.v)
     if not plan.constant:
         if not refactor(m, w, t):
             return NOT_FINITE

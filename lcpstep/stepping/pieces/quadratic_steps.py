@@ -37,19 +37,18 @@ class QuadraticSteps(Steps):
 
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
         super().__init__(m, plan, w, record)
-        self.watched = self.watched or not m.flat  # rows may jump by the place
         self.told, self.asking = m.flat, self.watched and (not m.flat or self.n_rows > w.n_c)
         self.gliding = plan.trapezoidal and m.flat and m.n_c <= 1 and m.n_q == 1
 
     def pass_corner(self, t: float) -> bool:
         """Forces on the far side of a corner."""
         if self.w.joined:
-            turn_with_joints(self.w, within(self.plan, self.w, t))
+            turn_with_joints(self.w, within(self.w, t))
         return renew_forces(self.m, self.plan, self.w, t)
 
     def next_forces(self, t: float) -> None:
         """Forces, and accelerations of obstacles, at the end of a smooth interval."""
-        next_forces(self.m, self.plan, self.w, within(self.plan, self.w, t))
+        next_forces(self.m, self.plan, self.w, within(self.w, t))
 
     def begin_piece(self, t: float) -> int:
         """Accelerations and gap quadratics."""

@@ -91,8 +91,8 @@ def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
 def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:
     """The impulses of the stretch, into w.z; gap velocities at its end without them are left in w.b."""
     n_c = w.n_c
-    gap_rates(m, within(plan, w, t), w.q, w.v, w.G, w.gap_t)
-    gap_bias(m, w, within(plan, w, t), w.q, w.v)
+    gap_rates(m, within(w, t), w.q, w.v, w.G, w.gap_t)
+    gap_bias(m, w, within(w, t), w.q, w.v)
     if not plan.constant:
         if not refactor(m, w, t):
             return False
@@ -149,8 +149,8 @@ def begin_again(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
             return NOT_FINITE
         put_on_surface(m, plan, w, t)
         if w.joined:
-            turn_with_joints(w, within(plan, w, t))
-        measure(m, plan, w, t)
+            turn_with_joints(w, within(w, t))
+        measure(m, w, t)
     while record.awaited() < t:
         left = t - record.awaited()
         for i in range(w.n_q):

@@ -14,7 +14,7 @@ cdef void mobility(Model m, Work w, Py_ssize_t c) noexcept nogil
 cdef void respond(Model m, Work w) noexcept nogil
 cdef bint refactor(Model m, Work w, double t) noexcept nogil
 cdef void gap_bias(Model m, Work w, double t, double* q, double* v) noexcept nogil
-cdef void measure(Model m, Plan plan, Work w, double t) noexcept nogil
+cdef void measure(Model m, Work w, double t) noexcept nogil
 cdef void shift(Work w, double tau) noexcept nogil
 @cython.locals(landing=Py_ssize_t, closed=bint)
 cdef void put_on_surface(Model m, Plan plan, Work w, double t) noexcept nogil

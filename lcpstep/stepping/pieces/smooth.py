@@ -109,10 +109,10 @@ def free_acceleration(m: Model, w: Work, t: float, q: Doubles, v: Doubles, out: 
 def renew_forces(m: Model, plan: Plan, w: Work, t: float) -> bool:
     """Forces at time t, the base of a piece, or their acceleration without contact; False where the mass fails."""
     if plan.trapezoidal and not plan.steady:
-        external_force(m, within(plan, w, t), w.q, w.v, w.force)
+        external_force(m, within(w, t), w.q, w.v, w.force)
         w.force_evaluations += 1
     elif not plan.trapezoidal:
-        if not free_acceleration(m, w, within(plan, w, t), w.q, w.v, w.free):
+        if not free_acceleration(m, w, within(w, t), w.q, w.v, w.free):
             return False
         w.force_evaluations += 1
     return True
@@ -149,10 +149,10 @@ def gap_bias(m: Model, w: Work, t: float, q: Doubles, v: Doubles) -> None:
     bias(m, t, w.low, w.high, q, v, w.q_try, w.G_try, w.gap_t_try, w.bias)
 
 
-def measure(m: Model, plan: Plan, w: Work, t: float) -> None:
+def measure(m: Model, w: Work, t: float) -> None:
     """Gaps and gap velocities at the base of the piece; zero where a contact is closed."""
     gaps(m, t, w.q, w.v, w.gap)
-    gap_rates(m, within(plan, w, t), w.q, w.v, w.G, w.gap_t)
+    gap_rates(m, within(w, t), w.q, w.v, w.G, w.gap_t)
     for c in range(w.n_c):
         w.rate[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
         if w.status[c] == CLOSED:
@@ -272,7 +272,7 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
         for i in range(n):
             w.v[i] += 0.5 * tau * (w.free[i] + w.a[i])
     else:
-        end = within(plan, w, t_next)
+        end = within(w, t_next)
         if not free_acceleration(m, w, end, w.q, w.v_try, w.a_try):
             return False
         w.force_evaluations += 1
@@ -281,5 +281,5 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
             w.free[i] = w.a_try[i]
         if w.joined:
             meet_joints(w, tau)
-    measure(m, plan, w, t_next)
+    measure(m, w, t_next)
     return True

@@ -3,7 +3,7 @@ from lcpstep.stepping.pieces.codes cimport EPS, LATE
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
 
-cdef inline double within(Plan plan, Work w, double t) noexcept nogil:
+cdef inline double within(Work w, double t) noexcept nogil:
     return min(max(t, w.low + w.margin), w.high - w.margin)
 
 

@@ -7,7 +7,7 @@ from lcpstep.stepping.pieces.codes import EPS, LATE
 from lcpstep.stepping.pieces.state import Plan, Work
 
 
-def within(plan: Plan, w: Work, t: float) -> float:
+def within(w: Work, t: float) -> float:
     """A time moved off the corners, where forces jump, into the smooth interval at hand."""
     return float(min(max(t, w.low + w.margin), w.high - w.margin))
 
