@@ -12,6 +12,11 @@ from lcpstep.callbacks import disabled
 compiled_only = pytest.mark.skipif(disabled(), reason="nothing is compiled")
 
 
+def slow(cases: Iterable[Any], *long: Any) -> list[Any]:
+    """These values of a parameter; the long ones are slow tests."""
+    return [pytest.param(x, marks=pytest.mark.slow if x in long else ()) for x in cases]
+
+
 def shared(cases: Iterable[Any], every: int) -> list[Any]:
     """These values of a parameter: each `every`-th is one of the slow tests, the others are run before a release."""
     marks = pytest.mark.slow, pytest.mark.thorough

@@ -10,7 +10,7 @@ import pytest
 from lcpstep import Moreau, simulate
 from lcpstep.model import UncompiledCallback
 from tests.falling import falling, falls
-from tests.marks import compiled_only
+from tests.marks import compiled_only, slow
 from tests.processes import python
 
 CONSTANTS = {"g": 8.0}
@@ -119,7 +119,7 @@ PLAIN = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", COMPILED)
+@pytest.mark.parametrize("name", slow(COMPILED, "solve"))
 def test_a_callback_of_any_make_is_compiled(name):
     with warnings.catch_warnings():
         warnings.simplefilter("error", UncompiledCallback)

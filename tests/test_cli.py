@@ -176,6 +176,7 @@ def test_options_of_other_methods_are_refused(capsys, method, option, said):
     assert said in err
 
 
+@pytest.mark.slow
 def test_motions_are_saved_as_what_their_names_say(capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("ball.csv", "ball.nc", "ball"):

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.marks import slow
+
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLES = {file.stem: file for file in (ROOT / "examples").rglob("ex*.py")}
 NEEDS = {
@@ -16,8 +18,9 @@ NEEDS = {
     "ex37_in_another_program": "fmpy",
 }
 SLOW = {  # films, a study, diagrams, and basins
-    "ex05_kept_and_sent",
     "ex03_own_mechanism",
+    "ex04_from_a_lagrangian",
+    "ex05_kept_and_sent",
     "ex06_cam_film",
     "ex26_double_pendulum_film",
     "ex32_work_precision",
@@ -163,9 +166,7 @@ def test_every_example_has_a_number():
     assert len(EXAMPLES) >= 25
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(x, marks=pytest.mark.slow if x in SLOW else ()) for x in sorted(EXAMPLES)]
-)
+@pytest.mark.parametrize("name", slow(sorted(EXAMPLES), *SLOW))
 def test_an_example_draws_and_its_number_is_right(name, monkeypatch, tmp_path):
     if name in NEEDS:
         pytest.importorskip(NEEDS[name])
@@ -213,7 +214,7 @@ def test_an_example_says_what_it_shows(name):
         pytest.param("docs/first-five-minutes.md", marks=pytest.mark.slow),
         "docs/large-systems.md",
         "docs/tutorial.md",
-        "docs/symbolic.md",
+        pytest.param("docs/symbolic.md", marks=pytest.mark.slow),
         "docs/hybrid-systems.md",
         pytest.param("docs/seeing-and-keeping.md", marks=pytest.mark.slow),
         pytest.param("docs/accuracy.md", marks=pytest.mark.slow),

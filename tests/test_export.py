@@ -85,6 +85,7 @@ print(called.count("finalizePythonInterpreter"))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="the library lets go twice under Linux only")
 def test_the_library_lets_go_of_python_before_the_process_ends(tmp_path):
     pytest.importorskip("pythonfmu3")

@@ -131,6 +131,7 @@ sys.exit(interrupt.ending(main))
 """
 
 
+@pytest.mark.slow
 def test_an_interrupt_in_a_finalizer_is_raised_when_that_is_over():
     """Python drops it there, and prints a traceback; the command was ended from outside, whatever it had to save."""
     done = subprocess.run(
@@ -206,6 +207,7 @@ def test_no_loop_keeps_python_from_hearing(words, tmp_path):
     assert said(err, "kept") == "nothing"
 
 
+@pytest.mark.slow
 def test_a_motion_that_is_interrupted_is_saved_as_far_as_it_came(tmp_path):
     words = ["simulate", *LONG["simulate"].split()]
     _, err, seconds = interrupted(words, tmp_path, AFTER)

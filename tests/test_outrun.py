@@ -145,6 +145,7 @@ for parts in (1, 3, 64):
 """
 
 
+@pytest.mark.slow
 def test_the_bound_of_the_sources_alone_is_that_of_what_is_built(tmp_path):
     built, plain = both_ways(tmp_path, PROGRAM)
     assert built == plain

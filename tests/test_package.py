@@ -149,6 +149,7 @@ def test_packages_come_by_pip_where_uv_fails(tmp_path, monkeypatch):
     assert (tmp_path / "setting-up.log").read_text() == "no such package\n"
 
 
+@pytest.mark.slow
 def test_nothing_is_translated_to_tell_what_the_package_needs(tmp_path):
     """pip and build ask for it several times, each time in a process of its own."""
     for name in ("setup.py", "ready.py", "ready_words.py", "pyproject.toml", "README.md", "LICENSE"):

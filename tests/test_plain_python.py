@@ -196,6 +196,7 @@ def test_everything_runs_without_numba_and_one_line_says_that_it_is_missing():
     assert said.startswith("numba cannot be imported (No module named")
 
 
+@pytest.mark.slow
 def test_the_environment_can_ask_for_plain_python():
     plain, fast = (python(RUN, NUMBA_DISABLE_JIT=x) for x in "10")
     *plain, without = plain.split("\n")

@@ -90,6 +90,7 @@ def test_the_motion_in_closed_form_comes_back_with_a_ready_scene(tmp_path):
     assert bits(back.scene.exact(times[:3] * 0.0)) == bits(shorter.exact(times[:3] * 0.0))
 
 
+@pytest.mark.slow
 def test_it_is_the_same_in_another_process(tmp_path):
     run = simulate(scenes.cam_follower(rpm=660.0, t_end=0.5), EventDriven(1e-9, 1e-9))
     run.save(tmp_path / "run.nc")

@@ -21,6 +21,7 @@ def column(n=3, t_end=0.8):
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_what_a_solver_adds_falls_with_its_tolerance_and_the_error_of_the_step_does_not():
     scene = column()
     reference = simulate(scene, Moreau(1e-5))

@@ -65,7 +65,7 @@ def test_the_time_in_a_held_state_is_an_integral(model):
 @pytest.mark.parametrize(
     "settings",
     [
-        pytest.param({"model": "slip"}, id="slip"),
+        pytest.param({"model": "slip"}, id="slip", marks=pytest.mark.slow),
         pytest.param({"model": "constant"}, id="constant", marks=pytest.mark.slow),
         pytest.param(WET, id="wet", marks=pytest.mark.slow),
     ],

@@ -56,6 +56,7 @@ def distances(speeds, steps, **more):
     return found
 
 
+@pytest.mark.slow
 def test_a_diagram_of_time_stepping_approaches_the_event_driven_one_with_order_one():
     steps = np.array([8e-4, 2e-4, 5e-5])
     found = distances(np.linspace(690.0, 735.0, 10), steps)  # O(1, 1), stable throughout

@@ -40,6 +40,7 @@ def test_a_neighbourhood_is_homogeneous_only_if_all_of_it_is():
     assert np.all(inner[0] == -1)
 
 
+@pytest.mark.slow
 def test_basins_agree_with_runs_followed_one_by_one_and_divide_into_any_parts(monkeypatch):
     scene, corners = cam_follower(rpm=358.5, coordinates="absolute"), ([0.05, -60.0], [1.6, 60.0])
     data = basins(scene, *corners, (60, 60), sample=600)

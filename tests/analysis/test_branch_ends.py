@@ -24,6 +24,7 @@ def test_a_closed_branch_is_followed_once_round(forward):
     assert np.all(np.hypot(branch.x[:, 0], branch.p) == pytest.approx(1.0, abs=1e-9))
 
 
+@pytest.mark.slow
 def test_an_impact_that_becomes_a_graze_ends_its_branch_in_few_points():
     # The orbit that strikes once a period is the steady oscillation, of amplitude F / |k - m w^2 + i c w|, as soon as
     # the stop is that far. Its multiplier goes to infinity there, and its speed to zero as the distance.

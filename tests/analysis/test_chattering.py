@@ -100,7 +100,12 @@ def test_the_speeds_above_are_those_at_which_a_sequence_ends_on_the_corner(meeti
 
 @pytest.mark.parametrize(("speed", "corner"), MEETINGS)
 @pytest.mark.parametrize(
-    "width", [(0.03, 0.02), pytest.param((1e-3, 2e-3), marks=pytest.mark.thorough), (1e-6, 1e-6)]
+    "width",
+    [
+        (0.03, 0.02),
+        pytest.param((1e-3, 2e-3), marks=pytest.mark.thorough),
+        pytest.param((1e-6, 1e-6), marks=pytest.mark.slow),
+    ],
 )
 def test_the_end_of_a_sequence_meets_the_corner_at_that_speed_from_both_sides(speed, corner, width):
     low, high = speed - width[0], speed + width[1]

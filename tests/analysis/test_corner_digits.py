@@ -88,6 +88,7 @@ def test_both_sides_of_the_local_map_have_thirteen_digits_and_their_error_is_kno
             assert off < 2.0 * error[name]
 
 
+@pytest.mark.slow
 def test_the_branches_of_the_local_map_touch_those_of_the_full_system(orbit):
     values = orbit.p + np.linspace(-1.0, 1.0, 41) * 2e-3
     branches = orbit_branches(orbit, local_map(orbit), values)

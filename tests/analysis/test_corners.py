@@ -106,6 +106,7 @@ def test_the_verdict_is_that_of_the_full_system(orbit, chain):
     assert classify(chain).fixed.minus_exists == classify(chain).fixed.plus_exists == (False, True)
 
 
+@pytest.mark.slow
 def test_an_obstacle_of_ones_own_is_treated_alike():
     x = iterate(StroboscopicMap(hammered(4.0), EventDriven(), 0.4), [0.3, 0.0], 400)[-1]
     found = corner_impact(hammered, 4.0, x, corner=0, phase=0.4)

@@ -80,6 +80,7 @@ def test_a_branch_ends_at_the_range_both_ways_and_changes_where_its_special_poin
     assert flip.p == pytest.approx(0.75, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_parts_of_a_branch_are_cut_at_the_flip():
     pytest.importorskip("xarray")
     scene = cam_follower(rpm=735.0)

@@ -13,12 +13,12 @@ from lcpstep.thesis.maps import SCENARIOS, normal_form
 from lcpstep.thesis.numbers import Number, agreement, carried, entries, numbers
 from lcpstep.thesis.page import chapter_of, table
 from lcpstep.thesis.printed import PRINTED
-from tests.marks import shared
+from tests.marks import shared, slow
 
 FAST = ("4.4", "7.5")
 
 
-@pytest.mark.parametrize("name", FAST)
+@pytest.mark.parametrize("name", slow(FAST, "7.5"))
 def test_a_figure_comes_as_png_svg_and_data(name, tmp_path, capsys):
     assert main(["thesis", name, "--out", str(tmp_path)]) == DONE
     for kind in ("png", "svg", "json"):

@@ -16,6 +16,7 @@ from lcpstep.errorbar.advancement import Advancement
 from lcpstep.errorbar.wide import BETWEEN, narrowed, widened
 from lcpstep.recording import Kept
 from lcpstep.stepping.pieces.run import Again
+from tests.marks import slow
 
 
 class Asked:
@@ -43,7 +44,7 @@ DEAR = (
 )
 
 
-@pytest.mark.parametrize("name", CATALOGUE)
+@pytest.mark.parametrize("name", slow(CATALOGUE, "stack", "column"))
 def test_states_between_steps_change_nothing_of_a_run(name):
     scene = CATALOGUE[name].make()
     if not isinstance(scene, Scene):

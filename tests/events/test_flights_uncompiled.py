@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.marks import slow
 from tests.uncompiled import both_ways
 
 PROGRAM = """
@@ -25,7 +26,7 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("scene", slow(SCENES, "chattering to rest", "absolute, damped", "forced"))
 def test_flights_are_the_same_uncompiled(tmp_path, scene):
     expression, least = SCENES[scene]
     built, plain = both_ways(tmp_path, PROGRAM.replace("{scene}", expression))
@@ -40,7 +41,7 @@ ARCS = {
 }
 
 
-@pytest.mark.parametrize("scene", ARCS)
+@pytest.mark.parametrize("scene", slow(ARCS, "an even belt, two coefficients", "a belt that sways"))
 def test_arcs_are_the_same_uncompiled(tmp_path, scene):
     built, plain = both_ways(tmp_path, PROGRAM.replace("{scene}", ARCS[scene]))
     assert int(built[0].split()[0]) >= 4

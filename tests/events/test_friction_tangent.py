@@ -95,6 +95,7 @@ def test_the_woodpecker_through_impacts_sticking_slip_and_release(t_end):
     assert np.linalg.matrix_rank(J, 1e-9) == (4 if t_end < 0.05 else 3)
 
 
+@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(st.integers(0, 10**6), st.booleans())
 @example(

@@ -257,6 +257,7 @@ def test_it_does_by_every_method_of_high_order_beside_other_motion_and_near_the_
     assert len(times) <= len(expected) + 2
 
 
+@pytest.mark.slow
 def test_in_a_slit_the_wall_that_the_load_will_press_bears_it_from_the_start():
     """26208 N of a spring against a force that differs from it by 0.451 (cos 10 t - 1) N, and by rounding.
 

@@ -58,6 +58,7 @@ SCENES = [
         System(1, 1.0, weight),
         on_table,
         id="chattering on a table",
+        marks=pytest.mark.slow,
     ),
     pytest.param(CAM, System(1, 1.221, spring), lambda: follower(358.0, t_end=1.0), id="cam-follower"),
 ]

@@ -166,6 +166,7 @@ def test_bad_input_is_named_before_the_server_starts(capsys):
         assert errors.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_a_port_that_is_taken_is_named(capsys):
     pytest.importorskip("bokeh")
     with socket.socket() as s:

@@ -84,6 +84,7 @@ def test_what_cannot_begin_says_why():
     assert "restitution" in s.message
 
 
+@pytest.mark.slow
 def test_a_run_that_takes_too_long_shows_what_there_is(monkeypatch):
     monkeypatch.setattr(
         sessions, "PATIENCE", 0.3

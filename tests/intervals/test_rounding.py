@@ -27,7 +27,7 @@ def members(a, b):
     ("name", "exact"),
     [
         ("added", lambda x, y: x + y),
-        ("subtracted", lambda x, y: x - y),
+        pytest.param("subtracted", lambda x, y: x - y, marks=pytest.mark.slow),
         ("multiplied", lambda x, y: x * y),
     ],
 )

@@ -176,12 +176,14 @@ class Deaf(Description):
         os.kill(os.getpid(), signal.SIGVTALRM)
 
 
+@pytest.mark.slow
 def test_a_run_that_is_long_is_no_anomaly():
     (answer,) = answers([(7, replace(ELASTIC, h=1e-5, t_span=(0.0, 100.0)))], ["moreau"], 1, limit=4e-4)
     assert answer.endings == {"moreau": "cut short"}
     assert answer.findings == []
 
 
+@pytest.mark.slow
 def test_a_run_without_end_is_reported_and_the_rest_goes_on():
     (answer,) = answers([(7, Deaf(**vars(BALL)))], ["event-driven"], 1)
     assert answer.index == 7
@@ -293,6 +295,7 @@ class Pressed(Description):
         return super().scene()
 
 
+@pytest.mark.slow
 def test_workers_do_not_hear_an_interrupt_at_the_terminal():
     (answer,) = answers([(7, Pressed(**vars(BALL)))], ["event-driven"], 1)
     assert answer.endings == {"event-driven": "DONE"}

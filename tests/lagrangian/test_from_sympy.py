@@ -66,7 +66,8 @@ def known():
     "kinematics",
     [
         pytest.param([ua - a.diff(T), ub - b.diff(T)], marks=pytest.mark.slow),
-        [ua - a.diff(T), ub - a.diff(T) - b.diff(T)],  # absolute rate of the second rod
+        # absolute rate of the second rod
+        pytest.param([ua - a.diff(T), ub - a.diff(T) - b.diff(T)], marks=pytest.mark.slow),
         # depends on place and time
         pytest.param(
             [ua - 2 * a.diff(T) - 0.1 * sin(T), ub - (2 + cos(a)) * b.diff(T) - 0.3 * b],

@@ -84,6 +84,7 @@ print(solve_lcp(-W, b).status.name, solve_lcp_batch(np.array([W, W]), np.array([
 """
 
 
+@pytest.mark.slow
 def test_everything_is_solved_where_nothing_is_built(tmp_path):
     copy_without_what_is_built(tmp_path)
     assert python(NOTHING_BUILT, cwd=tmp_path, PYTHONPATH=str(tmp_path)).split() == ["True"] * 5 + [

@@ -18,6 +18,7 @@ def solved(A, G, r, c, chosen=False):
     return saddle.solve(Problem(r, c, np.abs(c), everywhere), everywhere & chosen, np.zeros(len(c)))
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None)
 @given(st.integers(1, 60), st.integers(0, 60), st.integers(0, 2**32 - 1), st.booleans(), st.booleans())
 def test_it_finds_what_pivoting_finds(n, m, seed, chosen, gyroscopic):

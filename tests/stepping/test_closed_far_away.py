@@ -32,7 +32,11 @@ def test_beads_that_are_pushed_along_stay_together():
 @pytest.mark.usefixtures("sparse_steps")
 @pytest.mark.parametrize(
     ("lcp", "made", "steps"),
-    [("lemke", np.asarray, 20_000), ("qp", np.asarray, 800), ("lemke", sparse.csr_array, 800)],
+    [
+        ("lemke", np.asarray, 20_000),
+        pytest.param("qp", np.asarray, 800, marks=pytest.mark.slow),
+        ("lemke", sparse.csr_array, 800),
+    ],
 )
 def test_a_body_that_slides_for_long_stays_on_its_plane(lcp, made, steps):
     """Each step rounds the coordinates alike, so that what opens the gap by rounding adds up."""

@@ -118,7 +118,7 @@ def test_light_bodies_beside_heavy_ones_stay_at_rest_on_it(seed):
 
 def test_a_wall_that_moves_against_the_joints_ends_the_run():
     def pushed(t, q, v, p, out):
-        out[0] = np.array([1e-6 * t, 1e-6, 0.0])
+        out[0, 0], out[0, 1], out[0, 2] = 1e-6 * t, 1e-6, 0.0
 
     scene = Scene(
         LinearSystem(np.eye(2), force=[0.0, 1.0]), [0.0, 0.0], [0.0, 0.0], (0.0, 1.0),

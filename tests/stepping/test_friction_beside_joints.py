@@ -71,6 +71,7 @@ def test_a_contact_of_the_joints_changes_nothing(method, mu_own):
         assert not np.any(beside.friction_impulse[:, own]), seed
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("sparse_steps")
 def test_nor_in_sparse_steps():
     for seed in range(20):

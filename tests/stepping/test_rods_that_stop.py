@@ -91,7 +91,7 @@ RODS = [
 ]
 
 
-@pytest.mark.parametrize(("rod", "h"), RODS)
+@pytest.mark.parametrize(("rod", "h"), [pytest.param(*RODS[0], marks=pytest.mark.slow), *RODS[1:]])
 def test_both_ends_stop_at_one_instant(rod, h):
     scene = thrown(*rod)
     m, exact = simulate(scene, Located(h, max_events=1000)), simulate(scene, EventDriven())

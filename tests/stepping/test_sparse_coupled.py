@@ -11,6 +11,7 @@ from lagrangian import Coulomb, Harmonic, Joints, LinearContacts, LinearJoints, 
 from lcpstep import Moreau, SimulationError, energy, simulate
 from lcpstep.stepping.sparse_coupled import CoupledRun
 from lcpstep.trajectory import Status
+from tests.marks import slow
 
 pytestmark = pytest.mark.usefixtures("sparse_steps")
 
@@ -85,10 +86,10 @@ SAME = {
 }  # fmt: skip
 
 
-LONG = "chain of 40", "chain of 20, smooth"  # of these
+LONG = "chain of 40", "chain of 20, smooth", "chain of 5", "chain, Stribeck"  # of these
 
 
-@pytest.mark.parametrize("name", [pytest.param(x, marks=pytest.mark.slow if x in LONG else ()) for x in SAME])
+@pytest.mark.parametrize("name", slow(SAME, *LONG))
 def test_the_sparse_run_is_the_dense_run(name):
     scene, theta = SAME[name]
     a, b = (simulate(x, Moreau(2e-3, theta)) for x in (scene, made_dense(scene)))

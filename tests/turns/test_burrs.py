@@ -9,6 +9,7 @@ import pytest
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, simulate
 from lcpstep.turns import FastTurn, turns
+from tests.marks import slow
 
 OFFSET, FAST = 1.05, 2.0 * math.pi
 METHODS = [EventDriven(), Located(1e-2), Located(1e-2, order=4), Located(1e-2, tolerance=1e-6)]
@@ -67,7 +68,7 @@ def strikes(motion, p, phase):
 
 
 @pytest.mark.parametrize("motion", [bump, bell, roof])
-@pytest.mark.parametrize("width", [1e-1, 1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("width", slow([1e-1, 1e-2, 1e-3, 1e-4], 1e-2, 1e-4))
 def test_no_burr_is_flown_through(motion, width):
     rng = np.random.default_rng(int(1e4 * width))
     for k in range(6):

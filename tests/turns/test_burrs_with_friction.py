@@ -10,6 +10,7 @@ from benchmarks.audit.judge import Belt, follow
 from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene
 from lcpstep import EventDriven, Kind, Located, simulate
 from lcpstep.turns import turns
+from tests.marks import slow
 from tests.turns.test_burrs import FAST, OFFSET, bell, bump, strikes
 
 GRAVITY, MU = 9.81, 0.3
@@ -61,7 +62,7 @@ def carried(speed, length):
 
 
 @pytest.mark.parametrize("motion", [bump, bell])
-@pytest.mark.parametrize("width", [1e-1, 1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("width", slow([1e-1, 1e-2, 1e-3, 1e-4], 1e-2, 1e-4))
 def test_no_burr_of_a_table_is_flown_through(motion, width):
     rng = np.random.default_rng(int(1e4 * width))
     for k in range(9):
