@@ -28,7 +28,7 @@ class LinearContacts(Pickled):
     ----------
     G : (n_c, n_q)   gap Jacobian, constant [-]; dense, or a scipy.sparse matrix
     offset : (n_c,)   gap at q = 0, s = 0 [m]
-    restitution : (n_c,) or one number for all contacts, 0 <= r <= 1
+    restitution : (n_c,) or one number for all contacts, 0 <= r <= 1; 0, the default, is plastic
     motion : callback filling out (n_c, 3), or None
         out[i] = (s_i, s_i', s_i'') at time t: the obstacle's position, velocity and acceleration.
     friction : Coulomb, or None for contacts without
@@ -99,7 +99,7 @@ class Contacts(Pickled):
     gap_t : callback filling out (n_c,), or None for gaps that do not depend on time   partial g / partial t
     bias : callback filling out (n_c,), or None   (dG/dt) v + d(g_t)/dt, the gap acceleration at v' = 0;
         differenced along the motion where not given (the event-driven integrator needs it)
-    restitution : (n_c,) or one number for all contacts, 0 <= r <= 1
+    restitution : (n_c,) or one number for all contacts, 0 <= r <= 1; 0, the default, is plastic
     friction : Coulomb, or None for contacts without
     lipschitz : (n_c,) or one number for all contacts, or None
         Bound of |du/dt| in free motion [m/s^2], for audits of callbacks of which bounds cannot be found.

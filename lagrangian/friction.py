@@ -62,8 +62,8 @@ class Coulomb(Pickled):
 
     Raises
     ------
-    ValueError   a shape does not fit, a coefficient is negative, mu_s is smaller than mu, a restitution lies outside
-        [0, 1] or belongs to no law, or the law is unknown
+    ValueError   when contacts get it: a shape does not fit, a coefficient is negative, mu_s is smaller than mu, a
+        restitution lies outside [0, 1] or belongs to no law, or the law is unknown
     """
 
     mu: ArrayLike | Callback

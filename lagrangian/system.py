@@ -76,6 +76,7 @@ class LinearSystem(Pickled):
     C, K : (n_q, n_q)   damping and gyroscopic terms [N s/m], and stiffness, symmetric [N/m]; None for zero
         If one of M, C, K is a scipy.sparse matrix, all are kept as such, and `Moreau` makes none of them dense.
     force : Harmonic, (n_q,) constant force, callback filling out (n_q,), or None   F(t) [N]
+        A callback may depend on time alone; forces that depend on q or v belong to a `System`.
     frame : callback filling out (n_q, 3), or None
         Moving frame: q is measured relative to c(t), and out[i] = (c_i, c_i', c_i''). The equation above then
         holds for q + c, which puts the force F - M c'' - C c' - K c on q.

@@ -39,7 +39,7 @@ CREATED = 1e-9  # of the largest energy: a gain below it is rounding
 
 @dataclass(frozen=True, eq=False)
 class Energy:
-    """Energy balance at the kept states; every attribute but the last has shape (n,) and is in joules.
+    """Energy balance at the kept states; every attribute but `t` and the last has shape (n,) and is in joules.
 
     Attributes
     ----------

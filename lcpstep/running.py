@@ -1,7 +1,8 @@
 """A run of any method: fed to its kernels in portions, its buffers emptied between them, and how it ended in words.
 
-A method gives a class that inherits `Run`, with `advance` (its kernel), `now`, `state` and `ahead` (where it is, and
-goes next), `dense` (states between the kept ones), `why` (what its own statuses mean) and `counts`.
+A method gives a class that inherits `Run`, with `advance` (its kernel), `done`, `now`, `state` and `ahead` (how far
+it has come, where it is, and goes next), `dense` (states between the kept ones), `why` (what its own statuses mean)
+and `counts`.
 """
 
 from __future__ import annotations

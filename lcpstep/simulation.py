@@ -73,8 +73,9 @@ def simulate(
     scene : lagrangian.Scene, or lagrangian.HybridScene for a system with modes (by `EventDriven`)
     method : lcpstep.Moreau, lcpstep.Located or lcpstep.EventDriven
     keep : which states the trajectory holds
-        1: every step (default); k: every k-th; increasing times: those; "impacts": those right after an event.
-        The impact log is always complete.
+        1: every step (default), and where events have their own times the states right after them; k: every k-th;
+        increasing times: those; "impacts": those right after an event; but for times, start and end as well. The
+        impact log is always complete.
     progress : called now and then with the time reached [s]
     error : whether the trajectory gets an error bar, `Trajectory.error` (`lcpstep.errorbar.bars.ErrorBar`), from a
         second run by another method, which takes about the time of the run again
@@ -91,7 +92,7 @@ def simulate(
     ------
     TypeError   scene is no Scene, method no method, progress no function, or error neither True nor False
     ValueError   keep is none of the above
-    LcpStepError   the method does not treat the scene, or has no error bar for it
+    LcpStepError   the method does not treat the scene, its step is longer than the span, or it has no error bar
     SimulationError   a callback or the motion became infinite or not-a-number; carries the motion so far
     SimulationInterrupted   a KeyboardInterrupt; carries the motion so far
 

@@ -41,9 +41,10 @@ class Kind(IntEnum):
 
     IMPACT = 0  # velocity jump; of `Moreau` the first step in which a contact bears
     ACCUMULATION = 1  # infinitely many impacts end here (complete chattering)
-    STICK = 2  # the contact stays closed from here on
+    STICK = 2  # the contact stays closed from here on; of `Moreau` the second step in a row in which it bears
     RELEASE = 3  # a closed contact opens
-    SLIP = 4  # a contact that stuck slides; `before`, `after`: sliding velocities, of the next two as well
+    # The next three, not told by `Moreau`, have sliding velocities in `before` and `after`
+    SLIP = 4  # a contact that stuck slides
     STICK_TANGENT = 5  # a contact that slid sticks
     REVERSE = 6  # a contact slides the other way
     JAM = 7  # sliding without a force that would hold the contact: an impact without collision
@@ -82,7 +83,9 @@ class Trajectory(Answer):
     q, v : (n, n_q)   coordinates and velocities; v is the right limit, after an impact at that time
     impulse : (n, n_c)   impulse of each contact since the state before [N s], the contact force's included
     impacts : record array (n_events,), in the order of time
-        Fields time [s], contact, before, after (gap velocities [m/s]), impulse [N s], kind (`Kind`).
+        Fields time [s], contact, before, after (gap velocities [m/s], or sliding ones, see `Kind`), impulse [N s],
+        kind (`Kind`). Of `Moreau` time is the end of the step, before the velocity at its start, and the impulse
+        includes that of the step's forces.
     status : Status   DONE, or why the run ended early; `message` says it in words
     doubt : what is wrong with a run although it is DONE; also part of `message`, and "" where nothing is known
     audit : lcpstep.audit.Audit   what could be shown to be free of unnoticed events; None where it was not asked for

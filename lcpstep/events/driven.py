@@ -31,6 +31,7 @@ class EventDriven:
 
     Raises
     ------
+    TypeError   audit is neither True nor False
     ValueError   a tolerance or the bound is out of range, or jamming is neither of the two
 
     Notes

@@ -28,13 +28,14 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.vectors import clear, copy
+    from lcpstep.kernels.vectors import clear, copy, largest
     from lcpstep.lcp.kernel import solve_small
     from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, abs, max, min
+    from lcpstep.pointers import Doubles, abs, after, max, min
 
 DEGENERATE = 1e-13  # determinant, relative to its terms, below which normal and tangent are one direction
 ROUNDING = 1e-13  # relative: a sliding velocity this small has no sign
+FAST = 1e4  # times an approach: sliding that impulses of its size hardly change
 SOLVED = 0
 
 
@@ -48,7 +49,7 @@ class ContactProblem:
     carrier  place in `ids` of the normal of each tangent
     warm     the impulses of the last problem are a guess for the next; without one, a problem with several solutions
              has the same whatever came before
-    W, b, z  of the problem with friction
+    W, b, z  of the problem with friction;  fast : (n_c,)  sliding velocities that another problem has slower
     slow, sum    (n_c,) and (m,) of impacts in turn, see `energetic`: speeds below which contacts have no restitution;
                  impulses of those before
 
@@ -61,13 +62,14 @@ class ContactProblem:
         n_c = len(mu)
         unknowns = 4 * n_c if frictional else 0
         numbers = {"mobility": 4 * n_c * n_c, "rate": n, "impulse": 2 * n_c, "W": unknowns * unknowns}
-        numbers["slow"], numbers["sum"] = n_c, 2 * n_c
+        numbers["slow"], numbers["fast"], numbers["sum"] = n_c, n_c, 2 * n_c
         self.arrays = {name: np.zeros(size) for name, size in numbers.items()} | {"mu": mu}
         self.arrays |= {"b": np.zeros(unknowns), "z": np.zeros(unknowns)}
         self.lists = np.zeros(n, dtype=np.intp), np.zeros(n_c, dtype=np.intp)
         self.mobility, self.rate = doubles(self.arrays["mobility"]), doubles(self.arrays["rate"])
         self.impulse, self.mu = doubles(self.arrays["impulse"]), doubles(mu)
         self.slow, self.sum = doubles(self.arrays["slow"]), doubles(self.arrays["sum"])
+        self.fast = doubles(self.arrays["fast"])
         self.W, self.b, self.z = (
             doubles(self.arrays["W"]),
             doubles(self.arrays["b"]),
@@ -84,7 +86,7 @@ def solve_contacts(c: ContactProblem, n_a: int, n_f: int) -> bool:
         return solve_normals(c, n_a)
     if n_a == 1 and solve_frictional(c.mobility, c.rate, c.mu[c.ids[0]], c.impulse):
         return True
-    return solve_three_rows(c, n_a, n_f) or solve_four_rows(c, n_a, n_f) or solve_sliding(c, n_a, n_f)
+    return solve_three_rows(c, n_a, n_f) or solve_four_rows(c, n_a, n_f) or solve_slowed(c, n_a, n_f)
 
 
 def solve_normals(c: ContactProblem, n_a: int) -> bool:
@@ -166,34 +168,22 @@ def solve_four_rows(c: ContactProblem, n_a: int, n_f: int) -> bool:
     return True
 
 
-def solve_sliding(c: ContactProblem, n_a: int, n_f: int) -> bool:
-    """Unknowns p_N alone, if all that are pressed slide on as they would without impulses.
+def solve_slowed(c: ContactProblem, n_a: int, n_f: int) -> bool:
+    """The same with slower sliding where that goes on all the same.
 
-    Approaches may be so slow beside the sliding, as at the end of a chattering, that both keep no digits in one
-    problem.
+    Approaches may be so slow beside it, as at the end of a chattering, that both keep no digits in one problem.
     """
-    m = n_a + n_f
-    clear(c.z, n_a)
-    for i in range(n_a):
-        c.b[i] = c.rate[i]
-        for k in range(n_a):
-            c.W[i * n_a + k] = c.mobility[i * m + k]
+    most, found = FAST * largest(c.rate, 0.0, n_a), False
     for f in range(n_f):
-        k, T = c.carrier[f], n_a + f
-        friction = c.mu[c.ids[k]] if c.rate[T] > 0.0 else -c.mu[c.ids[k]]
-        for i in range(n_a):
-            c.W[i * n_a + k] -= c.mobility[i * m + T] * friction
-    if solve_small(c.W, c.b, c.z, n_a, c.work) != SOLVED:
-        return False
-    copy(c.impulse, c.z, n_a)
-    for f in range(n_f):
-        k, T = c.carrier[f], n_a + f
-        c.impulse[T] = -c.mu[c.ids[k]] * c.z[k] if c.rate[T] > 0.0 else c.mu[c.ids[k]] * c.z[k]
-    slides = True
+        c.fast[f] = c.rate[n_a + f]
+        c.rate[n_a + f] = max(-most, min(most, c.rate[n_a + f]))
+        found = found or c.rate[n_a + f] != c.fast[f]
+    found = found and (solve_three_rows(c, n_a, n_f) or solve_four_rows(c, n_a, n_f))
     for f in range(n_f):
         u, _ = motion_of(c, c.impulse, n_a + f, n_a + n_f)
-        slides = slides and (c.z[c.carrier[f]] == 0.0 or u * c.rate[n_a + f] > 0.0)
-    return slides
+        found = found and (c.rate[n_a + f] == c.fast[f] or u * c.fast[f] > 0.0)
+    copy(after(c.rate, n_a), c.fast, n_f)
+    return found
 
 
 def motion_of(c: ContactProblem, p: Doubles, i: int, m: int) -> tuple[float, float]:

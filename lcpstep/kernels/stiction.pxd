@@ -2,10 +2,11 @@ cimport cython
 from lcpstep.kernels.coefficients cimport Coefficients
 from lcpstep.kernels.coulomb cimport ContactProblem
 
-cdef Py_ssize_t SLIDES, STICKS, GIVES_WAY
+cdef Py_ssize_t SLIDES, STICKS, GIVES_WAY, MEETS
 
 cdef bint solve_steps(
-    ContactProblem c, Coefficients k, Py_ssize_t* sticks, double* sliding, Py_ssize_t n_a, Py_ssize_t n_f
+    ContactProblem c, Coefficients k, Py_ssize_t* sticks, double* sliding, Py_ssize_t n_a, Py_ssize_t n_f,
+    bint impact
 ) noexcept nogil
 @cython.locals(some=bint, turns=bint)
 cdef bint come_to_rest(

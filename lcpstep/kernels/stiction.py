@@ -13,30 +13,38 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.coefficients import Coefficients
     from lcpstep.kernels.coulomb import ContactProblem, motion_of, solve_contacts
-    from lcpstep.kernels.repose import moves, stay
+    from lcpstep.kernels.repose import infects, moves, stay
     from lcpstep.kernels.vectors import clear
     from lcpstep.pointers import Doubles, Indices
 
-SLIDES, STICKS, GIVES_WAY = range(3)  # what has been tried of a contact
+SLIDES, STICKS, GIVES_WAY, MEETS = range(4)  # what has been tried of a contact; the last one meets a blow
 
 
 def solve_steps(
-    c: ContactProblem, k: Coefficients, sticks: Indices, sliding: Doubles, n_a: int, n_f: int
+    c: ContactProblem, k: Coefficients, sticks: Indices, sliding: Doubles, n_a: int, n_f: int, impact: bool
 ) -> bool:
     """Impulses of n_a contacts, n_f of them with tangents, into c.impulse; False where there are none.
 
+    Impacts meet mu, and so do all contacts that impulses connect with those that strike.
+
     sticks, sliding : (n_c,)   whether a contact stuck before the step; its sliding velocity then
+    impact : whether contacts strike; these have the entry 1 in c.sum : (n_a,), the others 0
     """
+    while impact and infects(c, n_a, n_f):
+        pass
     for f in range(n_f):
         i = c.ids[c.carrier[f]]
         k.tried[i] = STICKS if sticks[i] == 1 else SLIDES
-        c.mu[i] = k.sticking[i] if sticks[i] == 1 else k.sliding[i]
+        if impact and c.sum[c.carrier[f]] == 1.0:
+            k.tried[i] = MEETS
+        c.mu[i] = k.sticking[i] if k.tried[i] == STICKS else k.sliding[i]
     while True:
         if not solve_contacts(c, n_a, n_f):
             return False
         if come_to_rest(c, k, sliding, n_a, n_f):
             continue
-        rest_where_possible(c, sticks, sliding, n_a, n_f)
+        if not impact:
+            rest_where_possible(c, sticks, sliding, n_a, n_f)
         if not give_way(c, k, n_a, n_f):
             return True
 

@@ -28,7 +28,8 @@ class Located:
         4: Runge-Kutta, four to five force evaluations a step and after every impact. "exact": Taylor polynomials
         up to rounding, for linear systems under constant and harmonic forces (`lagrangian.Harmonic`) with flat
         contacts; a moving obstacle or frame with one coordinate only.
-    max_events : bound on the number of events of a run, which ends with the status TOO_MANY_EVENTS there
+    max_events : bound on the number of events of a run, rounds of its loop without one included; it ends with the
+        status TOO_MANY_EVENTS there
     max_per_step : bound on the events within one step; beyond it one plastic impact of all contacts ends the step,
         which loses energy that elastic contacts would keep; the run's message says how many steps that were. Not
         with friction, where steps hold any number of events
@@ -41,7 +42,9 @@ class Located:
 
     Raises
     ------
-    ValueError   h, a bound or the tolerance is not positive, or a tolerance is given with order "exact"
+    TypeError   audit is neither True nor False
+    ValueError   h, a bound or the tolerance is not positive, the order is none of these, or a tolerance is given with
+        order "exact"
     LcpStepError   when it runs: with order "exact" the scene has friction or joints, or not the linear motion under
         constant and harmonic forces that it takes
 

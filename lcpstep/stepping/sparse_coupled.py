@@ -115,8 +115,8 @@ class CoupledRun(SparseRun):
         G, idle = self.equations.G, closed & self.of_joints
         if np.any(missed(s_t - G @ v, G, s_t, most)[idle] > granted):
             return v, Status.LCP_FAILED
-        problem, impact = self.problem(step, active, *known, Blows(active, slow))
-        rebound = impact * self.tangent_restitution * sliding
+        problem, strikes = self.problem(step, active, *known, Blows(active, slow))
+        rebound = np.any(strikes) * self.tangent_restitution * sliding
         self.stiction.note(step.coupled, problem, point, self.T @ v + slip, rebound)
         self.modes, self.active = modes, active
         p_J, p_N, p_T = np.split(p, (self.joints.n, self.joints.n + len(s_t)))
@@ -141,11 +141,11 @@ class CoupledRun(SparseRun):
         """Impulses of all blows of the step together, and the change of the velocity that they make."""
         whole: Any = None
         while blows.follows(before.u):
-            problem, impact = self.problem(step, blows.chosen, before, rest, blows)
+            problem, strikes = self.problem(step, blows.chosen, before, rest, blows)
             if not np.all(np.isfinite(problem.b)):
                 return whole, Status.NOT_FINITE
             self.problems += bool(blows.chosen.any())
-            point = self.stiction.solve(step.coupled, problem, modes, p, before.sliding, impact)
+            point = self.stiction.solve(step.coupled, problem, modes, p, before.sliding, strikes)
             if not point.solved:
                 return point, Status.JOINTS_FAILED if point.joints > CONTRADICTION else Status.LCP_FAILED
             modes, p, v = point.modes, point.p, before.v + point.x
@@ -162,29 +162,32 @@ class CoupledRun(SparseRun):
 
     def problem(
         self, step: Any, active: Any, before: Before, rest: tuple[Array, Array, Array], blows: Blows
-    ) -> tuple[Problem, bool]:
-        """The problem of a blow; is it an impact? `rest`: rates of joints, normals and tangents at v = 0."""
+    ) -> tuple[Problem, Any]:
+        """The problem of a blow; which contacts strike. `rest`: rates of joints, normals and tangents at v = 0."""
         J, speeds, (J_t, s_t, slip) = step.coupled.R[: self.joints.n], np.abs(before.v), rest
-        rates, sizes, impact = self.rates(step, before, active, s_t, slip, blows)
+        rates, sizes, strikes = self.rates(step, before, active, s_t, slip, blows)
         b, size = np.append(J @ before.v + J_t, rates), np.append(abs(J) @ speeds + np.abs(J_t), sizes)
         rough = active & self.stiction.rough
-        return Problem(b, size, active, rough, self.stiction.mu, np.max(speeds)), impact
+        return Problem(b, size, active, rough, self.stiction.mu, np.max(speeds)), strikes
 
     def rates(
         self, step: Any, before: Before, active: Any, s_t: Array, slip: Array, blows: Blows
-    ) -> tuple[Array, Array, bool]:
-        """Rates of normals and tangents with what restitution adds, sizes of terms; is there an impact?"""
+    ) -> tuple[Array, Array, Any]:
+        """Rates of normals and tangents with what restitution adds, sizes of terms; which contacts strike.
+
+        That is asked where there is friction: without it no law depends on it.
+        """
         e, v, u, rough = self.equations, before.v, before.u, active & self.stiction.rough
         speeds, b = np.abs(v), [e.G_rows.times(v) - s_t, self.T @ v + slip]
         sizes = [e.G_rows.sizes(v) + np.abs(s_t), self.abs_T @ speeds + np.abs(slip)]
         if rough.any():
             b = [np.where(np.abs(x) > NO_APPROACH * size, x, 0.0) for x, size in zip(b, sizes, strict=True)]
         slow = np.abs(b[0] - u) + ROUNDING * step.steepest * np.max(np.abs(self.v))
-        impact = bool(rough.any() and np.any(active & (u < -slow)))
-        bounces = impact and not blows.last
+        strikes = active & (u < -slow) & rough.any()
+        bounces = np.any(strikes) and not blows.last
         tangents = bounces * self.tangent_restitution * before.sliding
         added = np.concatenate([blows.rebound(u, e.restitution), tangents])
-        return np.concatenate(b) + added, np.concatenate(sizes) + np.abs(added), impact
+        return np.concatenate(b) + added, np.concatenate(sizes) + np.abs(added), strikes
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""

@@ -18,7 +18,7 @@ from lcpstep.stepping.sparse_path import STICK
 
 Array = NDArray[np.float64]
 AT_REST = 1e-12  # of the terms of a sliding velocity: less is rounding; see `kernels.repose`, `stiction`
-SLIDES, STICKS, GIVES_WAY = range(3)  # what has been tried of a contact
+SLIDES, STICKS, GIVES_WAY, MEETS = range(4)  # what has been tried of a contact; the last one meets a blow
 
 
 class Stiction:
@@ -54,17 +54,20 @@ class Stiction:
         return True
 
     def solve(
-        self, coupled: Coupled, problem: Problem, modes: Any, p: Array, sliding: Array, impact: bool
+        self, coupled: Coupled, problem: Problem, modes: Any, p: Array, sliding: Array, strikes: Any
     ) -> Point:
         """The answer with the coefficients that fit it; those of `problem` do not count.
 
-        sliding : (n_c,)   sliding velocities at the start of the step;  impact : whether contacts strike in it
+        sliding : (n_c,)   sliding velocities at the start of the step
+        strikes : (n_c,)   contacts that strike in it: these, and all that impulses connect with them, meet mu
         """
         tried = np.where(self.sticks, STICKS, SLIDES)
-        mu = self.mu if impact else np.where(self.sticks, self.mu_s, self.mu)
+        if self.kernel.two and np.any(strikes):
+            tried[connected(coupled, strikes, problem.active)] = MEETS
+        mu = np.where(tried == STICKS, self.mu_s, self.mu)
         while True:
             point = coupled.solve(problem._replace(mu=mu), modes, p)
-            if impact or not self.kernel.two or not point.solved:
+            if not self.kernel.two or not point.solved:
                 return point
             u, size = self.rates(coupled, problem, point)
             moves = problem.rough & (np.abs(u) > AT_REST * size)
@@ -90,3 +93,16 @@ class Stiction:
         T = slice(coupled.n_r - coupled.n_c, None)
         u = (coupled.R @ point.x + problem.b)[T]
         return u, (problem.size + coupled.abs_R @ (point.size_x / coupled.diagonal))[T]
+
+
+def connected(c: Coupled, strikes: Any, active: Any) -> Any:
+    """Contacts (n_c,) that impulses connect with those that strike, by coordinates, joints or active contacts."""
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import connected_components
+
+    entry, total = c.A.tocoo(), c.n_q + c.n_r
+    bear = np.concatenate([np.ones(c.n_j, dtype=bool), active, active])[c.row]
+    links = np.append(entry.row, c.n_q + c.row[bear]), np.append(entry.col, c.R.indices[bear])
+    part = connected_components(csr_array((np.ones(len(links[0])), links), shape=(total, total)), False)[1]
+    normals = part[c.n_q + c.n_j : total - c.n_c]
+    return np.isin(normals, normals[strikes])

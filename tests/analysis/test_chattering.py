@@ -69,7 +69,7 @@ def test_sequences_that_end_near_a_corner_agree_with_many_digits(rpm):
 SLOW_CAMS = [114.98, 115.2, 118.0, 119.7, 119.712, 119.71248, 119.7125, 119.713, 119.73]
 
 
-@pytest.mark.parametrize("rpm", shared(SLOW_CAMS, 5))
+@pytest.mark.parametrize("rpm", shared(SLOW_CAMS, 9))
 def test_sequences_of_slow_cams(rpm):
     for method in (EventDriven(), EventDriven(rtol=1e-13, atol=1e-14)):  # before one and the same reference
         assert_sequences_are_exact(rpm, 1, method)

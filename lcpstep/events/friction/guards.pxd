@@ -11,7 +11,7 @@ cdef bint read(Rubbing s, double t, double* y) noexcept nogil
 cdef bint begin_guards(Rubbing s, double t) noexcept nogil
 cdef double no_gap(Rubbing s, Py_ssize_t c, double u, double alpha) noexcept nogil
 cdef double low_flight(double u, double alpha, double band) noexcept nogil
-@cython.locals(fine=bint, error=double, place=double)
+@cython.locals(fine=bint, risen=bint, error=double, place=double)
 cdef Py_ssize_t first_event(Rubbing s, double h) noexcept nogil
 cdef bint has(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef bint stays_clear(Rubbing s, double h) noexcept nogil

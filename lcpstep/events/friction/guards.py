@@ -144,10 +144,13 @@ def first_event(s: Rubbing, h: float) -> int:
                 fine = False
                 break
             place = first_fall(s, g)
-            if place != NONE and a + (b - a) * place < s.found:
-                s.guard, s.found, s.risen = g, a + (b - a) * place, rises(s, g, place)
-                if g % GUARDS == 0 and not s.risen and s.lands[g // GUARDS] > 0.0:
-                    s.found = min(s.found, s.lands[g // GUARDS] / h)
+            when, risen = a + (b - a) * place, place != NONE and rises(s, g, place)
+            if g % GUARDS == 0 and not risen and s.lands[g // GUARDS] > 0.0:
+                when = min(
+                    when, s.lands[g // GUARDS] / h
+                )  # by where it has left its band others may have acted
+            if place != NONE and when < s.found:
+                s.guard, s.found, s.risen = g, when, risen
                 _, slope, _ = taylor(s.scan.c, place, s.scan.half)
                 s.slope = slope * parts / h
         if not fine:  # the same place again, more finely

@@ -8,6 +8,7 @@ cdef double STILL
 
 cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef bint strike(Rubbing s, Record record, Tally tally, double t, bint plastic) noexcept nogil
+cdef void take_for_none(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef bint strike_together(Rubbing s, Record record, Tally tally, double t, bint plastic) noexcept nogil
 @cython.locals(share=double, own=bint)
 cdef bint find_impulses(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f, bint plastic) noexcept nogil
@@ -18,14 +19,4 @@ cdef void strike_with(
 cdef Py_ssize_t jam(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef void find_free(Rubbing s) noexcept nogil
 cdef double still(Rubbing s, Py_ssize_t i) noexcept nogil
-@cython.locals(hops=bint)
-cdef bint close_small(Rubbing s, Record record, Tally tally, double t) noexcept nogil
-@cython.locals(slow=bint)
-cdef bint is_over(Rubbing s, Py_ssize_t c, double u, double height) noexcept nogil
-@cython.locals(rough=bint)
-cdef void close(Rubbing s, Py_ssize_t c) noexcept nogil
-cdef bint slides_on(Rubbing s, Py_ssize_t i, double slip) noexcept nogil
-cdef bint leaves_cone(Rubbing s, Py_ssize_t c) noexcept nogil
-@cython.locals(direction=double, mode=Py_ssize_t)
-cdef void take_back(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void forget_terms(Rubbing s) noexcept nogil

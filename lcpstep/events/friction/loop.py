@@ -15,9 +15,10 @@ from lcpstep.kernels.status import DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INC
 
 if not cython.compiled:
     from lcpstep.events.friction.balance import opens_any, reconsider
+    from lcpstep.events.friction.chatter import close_small
     from lcpstep.events.friction.equations import add_impulse, measure, measure_velocities
     from lcpstep.events.friction.guards import begin_guards
-    from lcpstep.events.friction.impact import close_small, forget_terms, jam, jump, still
+    from lcpstep.events.friction.impact import forget_terms, jam, jump, still
     from lcpstep.events.friction.keep import keep, keep_event
     from lcpstep.events.friction.modes import adopt_modes, decide, obey, undecided
     from lcpstep.events.friction.state import Rubbing

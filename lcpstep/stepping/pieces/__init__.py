@@ -2,10 +2,14 @@
 
 run, prepare, state      a run; what it starts from: constants of steps, the piece at hand and work space
 begin, loop, keep        the start, the loop over steps and pieces, which all orders share, and the states kept
-quadratic_steps          order 2: `piece`, its motion (`smooth`) and its gaps (`quadratic`)
+quadratic_steps          order 2: `piece`, its motion (`smooth`) and its gaps (`lcpstep.kernels.quadratic`)
 polynomial_steps         order 4 and "exact": `polynomial`, `scan` for events, `polynomial_forces`
-event, impulses, refine  an impact, the impulses of those that fire together, to the last digit; `corners`; `jumps`
+event, impulses, chosen  an impact, the impulses of those that fire together, their problem (`refine`: to the last
+                         digit; `independent`: in parts that know nothing of each other); `corners`; `jumps`
 contact_forces           of the contacts that rest; `switches` closes and opens them, `magnitudes` tells rounding
-settle, race, glide      events without end; impacts of many bodies in free flight; steps without events
+sequences, settle        how chattering ends; events without end
+race, glide              impacts of many bodies in free flight; steps without events
 joints, jointed          what joints do to a state, and to a step
+carried, led             coordinates of a moving frame; where the runs that a tolerance compares have led
+codes, times             codes of the loop; times to rounding
 """

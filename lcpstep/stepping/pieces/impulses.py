@@ -1,7 +1,7 @@
 """Impacts of `Located`: their impulses. How sequences of them end is in `sequences`.
 
-    0 <= u+ + r u-   complementary to  p >= 0        the contacts that fire, and the closed ones that a chain of
-                                                     contacts connects with them
+    0 <= u+ + r min(u-, 0)   complementary to  p >= 0   the contacts that fire, and the closed ones that a chain of
+                                                        contacts connects with them
 
 Sources: J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988); G. Osorio, Complex
 Behavior in Impacting Systems, eq. 4.2.
@@ -130,6 +130,7 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
         closing = c == first or (
             w.gap[c] <= plan.slack and abs(w.rate[c] + w.fall[c]) <= SAME_SPEED * w.fall[c]
         )
+        # Rounding must not add up over chattering: it strikes with the speed that it left with
         if w.fall[c] > 0.0 and w.rate[c] < 0.0 and closing:
             w.rate[c] = -w.fall[c]
     w.chosen[0] = first

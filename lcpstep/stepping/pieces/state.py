@@ -36,7 +36,7 @@ class Plan:
     made_for        length of pieces that the matrices in the place WHOLE are made for: h, but in parts of a step
     trapezoidal     a linear system without joints, which moves by the trapezoidal rule
     joined          there are joints
-    stiff           C or K is not zero
+    stiff           C or K is not zero; this, the next three and `constant` are asked of trapezoidal systems alone
     steady          the acceleration without contact never changes
     plain           flat contacts at rest: gaps follow from their own quadratics
     constant        M and the gap Jacobian are constant
@@ -85,7 +85,7 @@ class Work:
     free            acceleration without contact forces
     a               acceleration with them
     force, next_force    F(t) of linear systems at the base, and at the end of the smooth interval
-    q_base, q_try, v_try, a_try
+    q_base, q_try, v_try, a_try    to try; of an impact v_try are the sizes of the terms of v
     jolt            change by the impulses or forces of several contacts
     q_from, v_from, a_from    state, acceleration at the base of a piece within which states are kept
     q_time          time since the start of the step up to which a coordinate has been moved on
@@ -100,7 +100,7 @@ class Work:
     bias            gap acceleration at v' = 0
     gap_try, gap_t, gap_t_try
     end_u, end_s    s' and s'' of the obstacles at the end of the smooth interval
-    last            time of the last impact since the start of the step
+    last            time of the last impact since the start of the step, -1 before there was one
     force_now       contact force
     older, older_time    the last positive contact force, and when
     pushed          impulse of forces since the step began, strikes aside, that a tolerance looks at
@@ -131,7 +131,7 @@ class Work:
 
     Matrices, row by row:
     G, G_try, MG : (n_c, n_q)   gap Jacobian, one to try, (M^-1 G^T)^T
-    W : (n_c, n_c)              G M^-1 G^T
+    W : (n_c, n_c)              G M^-1 G^T, beside joints of what these leave: `smooth.respond`
     M : (n_q, n_q)              factor of a mass matrix that changes
     problem : (n_c, n_c);  pivots : (n_c + 1,);  lcp     work space of complementarity problems
     joints          those of the scene, where `joined`
@@ -143,7 +143,7 @@ class Work:
     low, high       the interval of time without corners
     jump            the corner found last that the scene does not name
     margin          by which times are moved off a corner: the plan's, or more where a jump takes some time
-    events          in this step
+    events          in this step, rounds of the loop without one included
     under_way       whether a step is
     closed_now      how many contacts are closed
     unchanged       whether the gaps have the accelerations of the piece before

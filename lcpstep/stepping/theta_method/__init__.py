@@ -1,1 +1,8 @@
-"""The Moreau theta-method, as kernels: a step in `theta_step`, the loop over steps in `theta_loop`."""
+"""The Moreau theta-method, as kernels.
+
+theta_loop, theta_step    the loop over steps; a step: `plan`, its constants, `moving`, its state and rows
+row_impulses, blows       impulses of the rows that take part; blows one after another
+implicit, responses       Newton's iteration of nonlinear systems; what impulses make of velocities
+one_contact               one coordinate and contact, in registers
+turned_rows, repair       rows that joints turn within the step; states put back onto joints and obstacles
+"""

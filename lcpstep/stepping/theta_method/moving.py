@@ -94,7 +94,7 @@ class Blows:
         self.v, self.u, self.sliding = self.own_v, self.own_u, self.own_sliding
 
     def begin(self, s: State, rows: Rows) -> None:
-        """Before the first blow of a step is what the forces make of its start."""
+        """Before the first blow of a step is what the forces make of its start; pointers, which follow every step."""
         self.v, self.u, self.sliding, self.taken = s.v_free, s.u, rows.sliding, 0
 
 

@@ -148,16 +148,14 @@ def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool
             c.problem.slow[k] = max(c.problem.slow[k], c.blows.least)
             c.rebound[c.problem.ids[k]] = m.restitution[c.problem.ids[k]] * brought(c, k)
         return strike_in_turn(c.problem, c.rebound, n_a, n_f, -1)
-    if impact and c.coefficients.two:
-        c.coefficients.use(c.problem.mu)
-    if n_f == 0 or impact:
-        return solve_contacts(c.problem, n_a, n_f)
-    if not c.coefficients.two:
-        found = solve_contacts(c.problem, n_a, n_f)
-        if found:
-            rest_where_possible(c.problem, s.sticks, c.sliding, n_a, n_f)
-        return found
-    return solve_steps(c.problem, c.coefficients, s.sticks, c.sliding, n_a, n_f)
+    if n_f > 0 and c.coefficients.two:
+        for k in range(n_a if impact else 0):
+            c.problem.sum[k] = 1.0 if c.blows.u[c.problem.ids[k]] < -c.problem.slow[k] else 0.0
+        return solve_steps(c.problem, c.coefficients, s.sticks, c.sliding, n_a, n_f, impact)
+    found = solve_contacts(c.problem, n_a, n_f)
+    if found and n_f > 0 and not impact:
+        rest_where_possible(c.problem, s.sticks, c.sliding, n_a, n_f)
+    return found
 
 
 def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
