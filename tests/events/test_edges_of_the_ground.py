@@ -64,6 +64,38 @@ def test_what_slides_over_a_ridge_flies_off(method, mu, slopes):
 
 
 @pytest.mark.parametrize("method", PLAIN)
+@pytest.mark.parametrize(("slope", "speed"), [(0.5, 3.0), (0.6, 3.7)])
+def test_what_slides_over_a_roof_with_friction_flies_off(slope, speed, method):
+    """By a tolerance steps became too short to be told from the edge, and the body was dragged round it."""
+    mu = 0.3
+    scene = sliding((slope, -slope), speed, Coulomb(mu, tangent, slip=at_rest))
+    m = simulate(scene, method, keep=[0.15])
+    pull = -9.81 * (slope + mu) / (1.0 + slope**2)
+    reached = np.sqrt(speed**2 + 0.6 * pull)
+    later = 0.15 - 0.6 / (speed + reached)
+    true = [reached * later, slope * reached * later - 0.5 * 9.81 * later**2]
+    assert m.q[-1] == pytest.approx(true, abs=1e-8)
+
+
+@pytest.mark.parametrize("method", PLAIN)
+@pytest.mark.parametrize(("rise", "share"), [(0.05, 1.005), (0.005, 1.02), (0.001, 1.2)])
+def test_an_edge_hides_no_landing_just_before_it(rise, share, method):
+    """The gap was above zero at both ends of a step, and the edge between its landing and the end of that step.
+
+    The low hop that follows passes the edge: `EventDriven` came nearer and nearer to it, but not beyond.
+    """
+    speed, mu, r, time = 2.0, 0.1, 0.3, 2.0 * rise / 9.81
+    start = -share * speed * time
+    ground = Contacts(
+        1, gap, normal, bias=at_rest, restitution=r, friction=Coulomb(mu, tangent, slip=at_rest)
+    )
+    m = simulate(Scene(FALLS, [start, 0.0], [speed, rise], (0.0, 0.04), ground, p=[0.0, -0.6]), method)
+    later, slower, up = 0.04 - time, speed - mu * (1.0 + r) * rise, r * rise
+    true = [start + speed * time + slower * later, up * later - 0.5 * 9.81 * later**2]
+    assert m.q[-1] == pytest.approx(true, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", PLAIN)
 @pytest.mark.parametrize("slopes", [(-0.4, 0.3), (0.1, 0.8), (-0.9, -0.1)])
 def test_what_slides_into_a_valley_goes_on_up_its_other_side(slopes, method):
     """Its gap velocity before is zero, and does not rebound: what is left is the velocity along the other slope."""
@@ -73,6 +105,23 @@ def test_what_slides_into_a_valley_goes_on_up_its_other_side(slopes, method):
         onward = reached * (1.0 + slopes[0] * slopes[1]) / (1.0 + slopes[1] ** 2)
         later, pull = 0.15 - time, -9.81 * slopes[1] / (1.0 + slopes[1] ** 2)
         assert m.q[-1, 0] == pytest.approx(onward * later + 0.5 * pull * later**2, abs=1e-10)
+
+
+def test_a_hop_passes_an_edge_shortly_before_it_would_land():
+    """Its gap was looked at up to 0.93 of it, and the edge lay beyond."""
+    slope, r = -0.1067, 0.32
+    speed, rise, x, time = 1.5, 0.7, 0.0, 0.0
+    start = [speed, slope * speed + rise]
+    for _ in range(3):
+        x, time = x + speed * 2.0 * rise / 9.81, time + 2.0 * rise / 9.81
+        speed, rise = speed - slope * (1.0 + r) * rise / (1.0 + slope**2), r * rise
+    start_x, later = -x - 0.98 * speed * 2.0 * rise / 9.81, 0.05
+    ground = Contacts(1, gap, normal, bias=at_rest, restitution=r)
+    scene = Scene(FALLS, [start_x, slope * start_x], start, (0.0, time + later), ground, p=[slope, -0.52])
+    m = simulate(scene, EventDriven())
+    x += start_x
+    true = [x + speed * later, slope * (x + speed * later) + rise * later - 0.5 * 9.81 * later**2]
+    assert m.q[-1] == pytest.approx(true, abs=1e-9)
 
 
 HOPS = [

@@ -140,9 +140,14 @@ def first_event(s: Rubbing, h: float) -> int:
                 continue
             copy(s.scan.sample, after(s.samples, g * SAMPLES), SAMPLES)
             error = convert(s.scan)
-            if error > RESOLVED * largest(s.scan.sample, 0.0, SAMPLES) + s.band[g] and parts < PARTS:
-                fine = False
-                break
+            if error > RESOLVED * largest(s.scan.sample, 0.0, SAMPLES) + s.band[g]:
+                if parts < PARTS:
+                    fine = False
+                    break
+                if (
+                    s.mode[g // GUARDS] == OPEN
+                ):  # beside an edge a polynomial swings below zero, not its samples
+                    copy(s.scan.c, s.scan.sample, DEGREE + 1)
             place = first_fall(s, g)
             when, risen = a + (b - a) * place, place != NONE and rises(s, g, place)
             if g % GUARDS == 0 and not risen and s.lands[g // GUARDS] > 0.0:

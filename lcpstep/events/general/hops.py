@@ -17,6 +17,7 @@ if not cython.compiled:
     from math import pow, sqrt
 
     from lcpstep.events.general.earliest import NEVER, NONE, gap_noise, observe
+    from lcpstep.events.general.equations import gap_tolerance
     from lcpstep.events.general.impact import speed_noise
     from lcpstep.events.general.parabolas import hop
     from lcpstep.events.general.state import Mechanism
@@ -39,7 +40,7 @@ LONGER = 3.0  # how much longer than under constant acceleration a hop may last
 SHORT = 0.02  # of the scan interval: what the quadrature of a hop resolves to rounding
 LOW = 1e-6  # of the positions: higher gaps are as well known by their difference
 FAINT = 1e-12  # the same where no corner is: of lower ones it tells no more than four digits
-UNLIKE = 0.25  # of a gap shortly before it lands: more is an edge of the obstacle
+UNLIKE = 1e-6  # of the way that its speed at first would take a gap: one so far open has not landed
 STEADY = 1e-7  # of its terms: a gap velocity that changes by more at a corner does not do so by errors of integration
 
 
@@ -110,13 +111,14 @@ def hop_end(s: Mechanism, c: int, guess: float, longest: float) -> float:
 
 
 def ends_so(s: Mechanism, c: int, tau: float) -> bool:
-    """Whether the gap itself, where it was last observed, is that of a hop that lands at tau.
+    """Whether the gap itself is closed where its hop lands.
 
     It is another one where the obstacle has an edge or a valley, at which the gap velocity jumps.
     """
-    d = (1.0 - NODE_3) * tau
-    expected = -d * (s.contact.speed[c] + 0.5 * d * s.contact.curve[c])
-    return abs(s.contact.gap[c] - expected) <= UNLIKE * abs(expected) + gap_noise(s, c)
+    if not observe(s, tau):
+        return False
+    errors = max(gap_noise(s, c), gap_tolerance(s, c))
+    return abs(s.contact.gap[c]) <= UNLIKE * tau * abs(s.start.speed[c]) + errors
 
 
 def follow(s: Mechanism, c: int, tau: float) -> tuple[float, float, bool]:

@@ -92,14 +92,24 @@ def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: D
 
 def note_bends(s: Strides, t: float, y: Doubles, dy: Doubles, bend: Doubles) -> None:
     """Accelerations of the open gaps that have not left their bands, at a state whose rates are known."""
-    a, known = after(dy, s.n_q), s.rows.n_held > 0 or (s.constant and not s.rows.moving)
+    known = False
     for c in range(s.n_c):
         if s.mode[c] == OPEN and s.armed[GUARDS * c] == 0:
             if not known:
-                measure_biases(s.rows, t, y, after(y, s.n_q))
+                know_biases(s, t, y)
                 known = True
-            i = s.n_j + c
-            bend[c] = product(s.R, a, i, s.n_q) + s.bias[i]
+            bend[c] = bend_of(s, c, dy)
+
+
+def know_biases(s: Strides, t: float, y: Doubles) -> None:
+    """What rows accelerate by themselves, at a state whose rates are known."""
+    if s.rows.n_held == 0 and not (s.constant and not s.rows.moving):
+        measure_biases(s.rows, t, y, after(y, s.n_q))
+
+
+def bend_of(s: Strides, c: int, dy: Doubles) -> float:
+    """Acceleration of gap c where that is known."""
+    return product(s.R, after(dy, s.n_q), s.n_j + c, s.n_q) + s.bias[s.n_j + c]
 
 
 def read_guards(s: Strides, t: float, y: Doubles) -> bool:
@@ -142,6 +152,27 @@ def first_event(s: Strides, h: float) -> int:
             _, slope, _ = taylor(s.scan.c, place, s.scan.half)
             s.slope = slope / h
     return s.guard
+
+
+def hides(s: Strides, t: float, h: float) -> bool:
+    """Whether a gap that rises at the end of the step just made has been below its surface, by how the step begins.
+
+    An edge of the obstacle beyond the place where it lands hides that from the polynomial. Gaps that are high for
+    their speeds are not asked for their acceleration, which at both ends of so short a fall is the same.
+    """
+    if s.rows.fixed and not s.rows.moving:
+        return False
+    known = False
+    for c in range(s.n_c):
+        g = GUARDS * c
+        gap, u, later = s.begin_value[g], s.begin_slope[g], s.end_slope[g]
+        if s.mode[c] == OPEN and later > 0.0 and gap < h * (abs(u) + later) and s.end_value[g] > s.band[g]:
+            if not known:
+                know_biases(s, t + h, s.y_new)
+                known = True
+            if gap + h * (u + 0.5 * h * bend_of(s, c, s.arrival)) < -s.band[g]:
+                return True
+    return False
 
 
 def arm(s: Strides) -> None:

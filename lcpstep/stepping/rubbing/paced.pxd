@@ -4,8 +4,9 @@ from lcpstep.stepping.rubbing.strides cimport Strides
 cdef Py_ssize_t DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 cdef double ROUNDING, SAFETY, LEAST, MOST, LEAST_SHARE, STEEP, NEAR
 
-@cython.locals(truncated=bint, longer=double, error=double, share=double, allowed=double)
+@cython.locals(truncated=bint, steep=bint, longer=double, error=double, share=double, allowed=double)
 cdef Py_ssize_t pace(Strides s, double t, double longest) noexcept nogil
+cdef bint leaps(Strides s, double h) noexcept nogil
 cdef Py_ssize_t why(Strides s, double error) noexcept nogil
 cdef double change(Strides s, double allowed, double error) noexcept nogil
 @cython.locals(good=bint)

@@ -18,6 +18,8 @@ if not cython.compiled:
     from math import pow
 
     from lcpstep.events.friction.state import GUARDS
+    from lcpstep.events.friction.step import mark_resting
+    from lcpstep.events.rows.jumps import farthest_off, find_jump
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, distance, largest
     from lcpstep.pointers import abs, after, inf, max, min
@@ -42,7 +44,9 @@ def pace(s: Strides, t: float, longest: float) -> int:
     """Step from t no longer than `longest` that meets the tolerance, of size `length`; a status.
 
     Rates that the step before has arrived with are as good as it was long: for a shorter one they are made anew.
-    No size is left where a velocity has jumped: there is a corner then, and the size is zero.
+    No size is left where a velocity has jumped: there is a corner then, and the size is zero. Errors that do not fall
+    with the step ask for that: sizes would shrink to none that is told from its neighbours, within which a jump of
+    what slides has no place.
     """
     h, before, longer = min(s.next_step, longest), inf, inf
     truncated = h < s.next_step
@@ -52,7 +56,8 @@ def pace(s: Strides, t: float, longest: float) -> int:
         if halves(s, t, h) and s.step(t, h) and note_arrival(s, t, h):
             error = weigh(s, h)
         share = h / s.span
-        if error < inf and error > before * pow(h / longer, STEEP):
+        steep = error < inf and error > before * pow(h / longer, STEEP)
+        if steep:
             share = max(share, LEAST_SHARE)
         allowed = share * s.tolerance
         if error <= allowed:
@@ -61,6 +66,9 @@ def pace(s: Strides, t: float, longest: float) -> int:
             if not error < inf or s.tolerance < ROUNDING or t + h >= s.clock.high:
                 return why(s, error)
             s.clock.break_at(t + h)
+            s.length = 0.0
+            return DONE
+        if steep and leaps(s, h):
             s.length = 0.0
             return DONE
         if longer == inf and not measure_base(s, t):
@@ -73,6 +81,13 @@ def pace(s: Strides, t: float, longest: float) -> int:
     s.size_v = largest(after(s.y_new, s.n_q), s.size_v, s.n_q)
     s.length = h
     return DONE
+
+
+def leaps(s: Strides, h: float) -> bool:
+    """Whether the velocity of a row at rest jumps within the step of size h just made; at a corner then."""
+    mark_resting(s)
+    i = farthest_off(s.rows, s)
+    return i >= 0 and find_jump(s.rows, s, i, h)
 
 
 def why(s: Strides, error: float) -> int:

@@ -8,6 +8,7 @@ cdef Py_ssize_t TORN
 cdef double LOOK_AHEAD, FURTHER
 
 cdef Py_ssize_t stride(Strides s, Record record, Tally tally) noexcept nogil
+@cython.locals(seen=bint)
 cdef Py_ssize_t search(Strides s, double t, double h) noexcept nogil
 cdef bint turns_at_once(Strides s, Py_ssize_t g) noexcept nogil
 cdef Py_ssize_t attempt(Strides s, double t, double h) noexcept nogil

@@ -22,7 +22,15 @@ if not cython.compiled:
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import abs, after, max, min
-    from lcpstep.stepping.rubbing.found import NOWHERE, arm, first_event, locate, note_arrival, note_base
+    from lcpstep.stepping.rubbing.found import (
+        NOWHERE,
+        arm,
+        first_event,
+        hides,
+        locate,
+        note_arrival,
+        note_base,
+    )
     from lcpstep.stepping.rubbing.paced import pace
     from lcpstep.stepping.rubbing.strides import Strides
 
@@ -77,8 +85,9 @@ def search(s: Strides, t: float, h: float) -> int:
     """A step from t of size h, or shorter, and the first event within it: `guard`, and `tau` from t; a status.
 
     A polynomial that tells of an event which the motion does not have is wrong by a power of the step, beside what a
-    gap that opens by a force which begins at zero is there: half the step tells better. Where a velocity jumps within
-    the step the guard is TORN: that is a corner, up to which the step is to be made again.
+    gap that opens by a force which begins at zero is there: half the step tells better, of what an edge hides, too.
+    Where a velocity jumps within the step the guard is TORN: that is a corner, up to which the step is to be made
+    again.
     """
     while True:
         code = attempt(s, t, h)
@@ -94,7 +103,8 @@ def search(s: Strides, t: float, h: float) -> int:
             s.clock.break_at(t + s.tau)
             s.guard = TORN
             return DONE
-        if s.guard < 0 or s.tau != NOWHERE or s.found >= 0.5 or h <= s.clock.untold(0.0):
+        seen = s.tau != NOWHERE or (s.guard >= 0 and s.found >= 0.5) or (s.guard < 0 and not hides(s, t, h))
+        if seen or h <= s.clock.untold(0.0):
             return DONE
         h *= 0.5
 
