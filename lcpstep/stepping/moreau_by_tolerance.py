@@ -10,7 +10,7 @@ Beside the difference of the two runs these count as errors, for both may agree 
     height           by which a gap has opened above a contact that is pressed and does not strike: its obstacle has
                      gone away within the step, and is still again
 
-and what releases and friction hide (`hidden_switches`).
+and what releases, friction (`hidden_switches`) and edges of obstacles (`hidden_edges`) hide.
 Their velocities are not compared: an impact that one run sees and the other just after the end is no error. So the
 step before an impact is halved until it is short, which costs the logarithm of its length. A contact that closes
 slower than the tolerance resolves is closed without rebound, so that chattering ends; one that lasts stays active
@@ -40,6 +40,7 @@ if not cython.compiled:
     from lcpstep.kernels.clock import Clock
     from lcpstep.kernels.vectors import copy, copy_indices, distance, largest
     from lcpstep.pointers import abs, after, inf, max, min
+    from lcpstep.stepping.hidden_edges import Edges, dip
     from lcpstep.stepping.hidden_switches import Switches
     from lcpstep.stepping.step_control import LEAST_SHARE, stamp
     from lcpstep.stepping.theta_method.responses import refit
@@ -55,12 +56,12 @@ class Attempts(Control):
     m, plan, s, rows            as it has them; the matrices of the plan are those of the part at hand
     times                       states asked for, which are kept here and not by the loop
     begin, closed, steps_before   the state at the start of the step: numbers, marks, and how many steps it is after
-    one_q, one_v                where the one step led
+    begin_v; one_q, one_v       velocities there; where the one step led
     part_q, part_v, part_g, part_u        the state at the start of the part at hand, its numbers in the same order
     between_q, between_v        a state within it
     struck                      whether anything was, in the step or one of its halves
     share                       of the error allowed, in those that a step with an event may make; at least 1
-    switches                    contacts that open, and friction
+    switches, edges             contacts that open, and friction; obstacles with edges
     A_q, A_v, A_f, X, W         of every level, where the system is linear
     clock                       knows the corners: the next one is at its `high`
     ends                        time at which the step at hand ends; that of a corner where it ends there
@@ -83,11 +84,8 @@ class Attempts(Control):
         m, plan, s, rows = way.m, way.plan, way.s, way.rows
         self.way, self.m, self.plan, self.s, self.rows = way, m, plan, s, rows
         self.times, self.record.n_times = self.record.times, 0
-        self.switches, self.struck, self.share = (
-            Switches(s.n_q, s.n_c, rows.n_c + rows.n_t, rows.n),
-            False,
-            1.0,
-        )
+        self.switches, self.edges = Switches(s.n_q, s.n_c, rows.n_c + rows.n_t, rows.n), Edges(s.n_c)
+        self.struck, self.share = False, 1.0
         places = OWN + 2 if m.linear else 1
         self.matrices = {name: np.zeros((places, *x.shape)) for name, x in plan.matrices.items()}
         self.own_made[:] = not m.linear
@@ -109,6 +107,7 @@ class Attempts(Control):
         self.part_v, self.part_g = after(self.part_q, n_q), after(self.part_q, 3 * n_q)
         self.part_u, self.one_v = after(self.part_g, n_c), after(self.one_q, n_q)
         self.between_q, self.between_v = after(self.one_q, 2 * n_q), after(self.one_q, 3 * n_q)
+        self.begin_v = after(self.begin, n_q)
 
     def attempt(self) -> int:
         """One step, then two halves of it. The halves are left out where they cannot help."""
@@ -141,11 +140,23 @@ class Attempts(Control):
         if self.record.event > self.event:
             self.happened = True
         self.apart_q = max(self.apart_q, distance(self.one_q, self.s.q, self.s.n_q))
+        if not self.m.flat:
+            self.look_for_edges(h, slow)
         if not self.struck:
             apart = distance(self.one_v, self.s.v, self.s.n_q)
             apart = max(apart, self.switches.unseen(h, self.plan, self.s, self.rows))
             self.apart_v = max(self.apart_v, apart - self.switches.slack)
         return FINISHED
+
+    def look_for_edges(self, h: float, slow: float) -> None:
+        """Errors where obstacles have edges: what lasts is struck there, or leaves, at a time that is not known."""
+        self.edges.find(self.switches.held, slow)
+        self.happened = self.happened or self.edges.passed or self.edges.depth > 0.0
+        self.apart_q = max(self.apart_q, self.edges.depth)
+        if self.edges.passed and not self.struck:
+            self.struck = True
+            self.apart_q = max(self.apart_q, h * distance(self.s.v, self.begin_v, self.s.n_q))
+            self.apart_v = max(self.apart_v, 2.0 * distance(self.s.v_free, self.part_v, self.s.n_q))
 
     def part(self, part: int, start: float, h: float, slow: float) -> int:
         """The step (part 0), or a half of it, taken from `start`; errors at its contacts."""
@@ -159,6 +170,8 @@ class Attempts(Control):
         if code != FINISHED:
             return code
         self.after_part(h, slow)
+        if part > 0 and not self.m.flat:
+            self.edges.note(part - 1, h, self.s, self.rows, self.part_v, self.part_g, self.part_u)
         self.switches.note(part, self.plan, self.s, self.rows, self.part_u, slow)
         end = start + h
         if part == 2 and end != self.ends:
@@ -285,10 +298,3 @@ class Attempts(Control):
         copy_indices(self.s.closed, self.closed, 2 * self.s.n_c)
         self.s.steps, self.s.iteration = self.steps_before, 0
         self.wind_back()
-
-
-def dip(g: float, u: float, u_next: float, h: float) -> float:
-    """How deep a gap that closes first and then opens has been below zero in between."""
-    if not u < 0.0 < u_next:
-        return 0.0
-    return max(0.0, 0.5 * h * u * u / (u_next - u) - max(0.0, g))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, Coulomb, LinearContacts, LinearSystem, Scene
-from lcpstep import EventDriven, Located, simulate
+from lcpstep import EventDriven, Located, Moreau, Status, simulate
 
 FALLS = LinearSystem(np.eye(2), force=[0.0, -9.81])
 
@@ -63,18 +63,32 @@ def test_what_slides_over_a_ridge_flies_off(method, mu, slopes):
         assert m.q[-1] == pytest.approx(true, abs=1e-8)
 
 
-@pytest.mark.parametrize("method", PLAIN)
-@pytest.mark.parametrize(("slope", "speed"), [(0.5, 3.0), (0.6, 3.7)])
-def test_what_slides_over_a_roof_with_friction_flies_off(slope, speed, method):
-    """By a tolerance steps became too short to be told from the edge, and the body was dragged round it."""
-    mu = 0.3
-    scene = sliding((slope, -slope), speed, Coulomb(mu, tangent, slip=at_rest))
-    m = simulate(scene, method, keep=[0.15])
+def over_a_roof(slope, speed, mu):
+    """A scene in which a particle slides over a roof with friction and flies off, and where it is after 0.15 s."""
     pull = -9.81 * (slope + mu) / (1.0 + slope**2)
     reached = np.sqrt(speed**2 + 0.6 * pull)
     later = 0.15 - 0.6 / (speed + reached)
     true = [reached * later, slope * reached * later - 0.5 * 9.81 * later**2]
-    assert m.q[-1] == pytest.approx(true, abs=1e-8)
+    return sliding((slope, -slope), speed, Coulomb(mu, tangent, slip=at_rest)), true
+
+
+def landing_before_an_edge(rise, share):
+    """One that hops, lands shortly before an edge, and hops over it; and where it is after 0.04 s."""
+    speed, mu, r, time = 2.0, 0.1, 0.3, 2.0 * rise / 9.81
+    rough = Coulomb(mu, tangent, slip=at_rest)
+    ground = Contacts(1, gap, normal, bias=at_rest, restitution=r, friction=rough)
+    start = -share * speed * time
+    later, slower, up = 0.04 - time, speed - mu * (1.0 + r) * rise, r * rise
+    true = [start + speed * time + slower * later, up * later - 0.5 * 9.81 * later**2]
+    return Scene(FALLS, [start, 0.0], [speed, rise], (0.0, 0.04), ground, p=[0.0, -0.6]), true
+
+
+@pytest.mark.parametrize("method", PLAIN)
+@pytest.mark.parametrize(("slope", "speed"), [(0.5, 3.0), (0.6, 3.7)])
+def test_what_slides_over_a_roof_with_friction_flies_off(slope, speed, method):
+    """By a tolerance steps became too short to be told from the edge, and the body was dragged round it."""
+    scene, true = over_a_roof(slope, speed, 0.3)
+    assert simulate(scene, method, keep=[0.15]).q[-1] == pytest.approx(true, abs=1e-8)
 
 
 @pytest.mark.parametrize("method", PLAIN)
@@ -84,18 +98,22 @@ def test_an_edge_hides_no_landing_just_before_it(rise, share, method):
 
     The low hop that follows passes the edge: `EventDriven` came nearer and nearer to it, but not beyond.
     """
-    speed, mu, r, time = 2.0, 0.1, 0.3, 2.0 * rise / 9.81
-    start = -share * speed * time
-    ground = Contacts(
-        1, gap, normal, bias=at_rest, restitution=r, friction=Coulomb(mu, tangent, slip=at_rest)
-    )
-    m = simulate(Scene(FALLS, [start, 0.0], [speed, rise], (0.0, 0.04), ground, p=[0.0, -0.6]), method)
-    later, slower, up = 0.04 - time, speed - mu * (1.0 + r) * rise, r * rise
-    true = [start + speed * time + slower * later, up * later - 0.5 * 9.81 * later**2]
-    assert m.q[-1] == pytest.approx(true, abs=1e-9)
+    scene, true = landing_before_an_edge(rise, share)
+    assert simulate(scene, method).q[-1] == pytest.approx(true, abs=1e-9)
 
 
-@pytest.mark.parametrize("method", PLAIN)
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
+def test_moreau_by_a_tolerance_meets_it_beyond_edges(tolerance):
+    """One step and its halves agreed on a velocity that they had braked up to the end of the step, or not at all."""
+    cases = [over_a_roof(*drawn) for drawn in ((0.5, 3.0, 0.3), (0.4, 3.4, 0.2), (0.6, 3.7, 0.02))]
+    cases += [landing_before_an_edge(*drawn) for drawn in ((0.05, 1.005), (0.05, 1.05))]
+    for scene, true in cases:
+        m = simulate(scene, Moreau(1e-2, tolerance=tolerance), keep=[0.15 if scene.t_span[1] > 0.1 else 0.04])
+        assert m.status == Status.DONE
+        assert m.q[-1] == pytest.approx(true, abs=10.0 * tolerance)
+
+
+@pytest.mark.parametrize("method", [*PLAIN, Moreau(1e-2, tolerance=1e-6)])
 @pytest.mark.parametrize("slopes", [(-0.4, 0.3), (0.1, 0.8), (-0.9, -0.1)])
 def test_what_slides_into_a_valley_goes_on_up_its_other_side(slopes, method):
     """Its gap velocity before is zero, and does not rebound: what is left is the velocity along the other slope."""
@@ -104,7 +122,8 @@ def test_what_slides_into_a_valley_goes_on_up_its_other_side(slopes, method):
         time, reached = at_the_edge(slopes, speed)
         onward = reached * (1.0 + slopes[0] * slopes[1]) / (1.0 + slopes[1] ** 2)
         later, pull = 0.15 - time, -9.81 * slopes[1] / (1.0 + slopes[1] ** 2)
-        assert m.q[-1, 0] == pytest.approx(onward * later + 0.5 * pull * later**2, abs=1e-10)
+        close = 1e-6 if isinstance(method, Moreau) else 1e-10
+        assert m.q[-1, 0] == pytest.approx(onward * later + 0.5 * pull * later**2, abs=close)
 
 
 def test_a_hop_passes_an_edge_shortly_before_it_would_land():
