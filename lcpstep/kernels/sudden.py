@@ -15,9 +15,11 @@ import cython
 
 if not cython.compiled:
     from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.pointers import abs, max
+    from lcpstep.kernels.vectors import largest
+    from lcpstep.pointers import Doubles, abs, max
 
 MORE = 4.0  # times what steps have left of a velocity so far
+PLACES = 8.0  # roundings of a place: those of the stages of a step, and of where it leads
 SHARE = 0.5  # of the whole: what is left of a jump between two ends as near as can be, and not of drift
 # Of a step: what changes within less than this is none, but a jump, or turns too fast to be seen
 SUDDEN = 1.0 / 64.0
@@ -63,12 +65,12 @@ class Sudden:
         """What rounding may make of the time of the lower place, from the begin t on."""
         return 2.0 * RESOLUTION * (abs(t) + self.low)
 
-    def just_before(self, t: float) -> float:
-        """The time just before the jump, however the sum with the begin t is rounded.
+    def just_before(self, t: float, coarse: float) -> float:
+        """The time just before the jump, however the sum with the begin t is rounded; coarse: see `coarseness`.
 
         Where rows jump they are still the old ones there, onto which the motion is put.
         """
-        return t + self.low - self.untold(t)
+        return t + self.low - max(self.untold(t), coarse)
 
     def is_turn(self) -> bool:
         """Whether the places still have something of the change between them that halving takes apart."""
@@ -81,3 +83,9 @@ class Sudden:
     def excuse(self, u: float) -> None:
         """What a step has left of a velocity is no jump, but its error."""
         self.drift = max(self.drift, MORE * abs(u))
+
+
+def coarseness(q: Doubles, v: Doubles, n: int) -> float:
+    """Time in which a motion goes some roundings of its places: what jumps at one is not told more finely."""
+    speed = largest(v, 0.0, n)
+    return PLACES * RESOLUTION * largest(q, 0.0, n) / speed if speed > 0.0 else 0.0

@@ -9,27 +9,38 @@ from lcpstep import EventDriven, Located, Moreau, Status, simulate
 FALLS = LinearSystem(np.eye(2), force=[0.0, -9.81])
 
 
+def slope_at(q, p):
+    """Slopes p[0] on the left of the edge, which is at p[2], and p[1] on its right."""
+    return p[0] if q[0] < p[2] else p[1]
+
+
 def gap(t, q, v, p, out):
-    """Slopes p[0] on the left of the edge and p[1] on its right."""
-    out[0] = q[1] - (p[0] if q[0] < 0.0 else p[1]) * q[0]
+    out[0] = q[1] - slope_at(q, p) * (q[0] - p[2])
 
 
 def normal(t, q, v, p, out):
-    out[0, 0], out[0, 1] = -(p[0] if q[0] < 0.0 else p[1]), 1.0
+    out[0, 0], out[0, 1] = -slope_at(q, p), 1.0
 
 
 def tangent(t, q, v, p, out):
-    out[0, 0], out[0, 1] = 1.0, p[0] if q[0] < 0.0 else p[1]
+    out[0, 0], out[0, 1] = 1.0, slope_at(q, p)
 
 
 def at_rest(t, q, v, p, out):
     out[0] = 0.0
 
 
-def sliding(slopes, speed, friction=None):
+def sliding(slopes, speed, friction=None, edge=0.0):
     """A particle that slides up to the edge from 0.3 m on its left."""
     ground = Contacts(1, gap, normal, bias=at_rest, restitution=0.3, friction=friction)
-    return Scene(FALLS, [-0.3, -0.3 * slopes[0]], [speed, speed * slopes[0]], (0.0, 0.3), ground, p=slopes)
+    return Scene(
+        FALLS,
+        [edge - 0.3, -0.3 * slopes[0]],
+        [speed, speed * slopes[0]],
+        (0.0, 0.3),
+        ground,
+        p=[*slopes, edge],
+    )
 
 
 def at_the_edge(slopes, speed):
@@ -80,7 +91,7 @@ def landing_before_an_edge(rise, share):
     start = -share * speed * time
     later, slower, up = 0.04 - time, speed - mu * (1.0 + r) * rise, r * rise
     true = [start + speed * time + slower * later, up * later - 0.5 * 9.81 * later**2]
-    return Scene(FALLS, [start, 0.0], [speed, rise], (0.0, 0.04), ground, p=[0.0, -0.6]), true
+    return Scene(FALLS, [start, 0.0], [speed, rise], (0.0, 0.04), ground, p=[0.0, -0.6, 0.0]), true
 
 
 @pytest.mark.parametrize("method", PLAIN)
@@ -89,6 +100,20 @@ def test_what_slides_over_a_roof_with_friction_flies_off(slope, speed, method):
     """By a tolerance steps became too short to be told from the edge, and the body was dragged round it."""
     scene, true = over_a_roof(slope, speed, 0.3)
     assert simulate(scene, method, keep=[0.15]).q[-1] == pytest.approx(true, abs=1e-8)
+
+
+@pytest.mark.parametrize("method", PLAIN)
+def test_rounding_of_places_hides_no_edge(method):
+    """Far from the origin the time of the jump is told more finely than its place: bodies were dragged round it."""
+    for edge in (100.2, 456.7, -1e4 - 0.3):
+        for slopes, mu in (((0.5, -0.5), 0.0), ((0.3, -0.2), 0.0), ((0.5, -0.5), 0.2)):
+            friction = Coulomb(mu, tangent, slip=at_rest) if mu > 0.0 else None
+            m = simulate(sliding(slopes, 3.1, friction, edge), method, keep=[0.15])
+            pull = -9.81 * (slopes[0] + mu) / (1.0 + slopes[0] ** 2)
+            reached = np.sqrt(3.1**2 + 0.6 * pull)
+            later = 0.15 - 0.6 / (3.1 + reached)
+            true = [edge + reached * later, slopes[0] * reached * later - 0.5 * 9.81 * later**2]
+            assert m.q[-1] == pytest.approx(true, rel=0.0, abs=1e-7)
 
 
 @pytest.mark.parametrize("method", PLAIN)
@@ -136,7 +161,9 @@ def test_a_hop_passes_an_edge_shortly_before_it_would_land():
         speed, rise = speed - slope * (1.0 + r) * rise / (1.0 + slope**2), r * rise
     start_x, later = -x - 0.98 * speed * 2.0 * rise / 9.81, 0.05
     ground = Contacts(1, gap, normal, bias=at_rest, restitution=r)
-    scene = Scene(FALLS, [start_x, slope * start_x], start, (0.0, time + later), ground, p=[slope, -0.52])
+    scene = Scene(
+        FALLS, [start_x, slope * start_x], start, (0.0, time + later), ground, p=[slope, -0.52, 0.0]
+    )
     m = simulate(scene, EventDriven())
     x += start_x
     true = [x + speed * later, slope * (x + speed * later) + rise * later - 0.5 * 9.81 * later**2]
@@ -159,6 +186,6 @@ def test_a_hop_may_end_on_the_other_side_of_a_valley(slope, restitution, x, y, s
     flat = simulate(Scene(FALLS, [x, y], [speed, 0.0], (0.0, 0.8), planes), EventDriven())
     end = flat.impacts.time[flat.impacts.contact == 1][0] + 0.005
     valley = Contacts(1, gap, normal, bias=at_rest, restitution=restitution)
-    scene = Scene(FALLS, [x, y], [speed, 0.0], (0.0, end), valley, p=[-slope, slope])
+    scene = Scene(FALLS, [x, y], [speed, 0.0], (0.0, end), valley, p=[-slope, slope, 0.0])
     m = simulate(scene, EventDriven(), keep=[end])
     assert m.q == pytest.approx(flat.at(m.t)[0], abs=1e-9)

@@ -15,4 +15,6 @@ cdef bint go_beyond(Rows s, double* q, double* v) noexcept nogil
 cdef double unseen(Rows s, Py_ssize_t i, double* v) noexcept nogil
 cdef double error(Rows s, Py_ssize_t i, double* v) noexcept nogil
 cdef double velocity(Rows s, Py_ssize_t i, double t, double* y) noexcept nogil
+@cython.locals(beyond=bint, coarse=double)
+cdef double hidden_by_rounding(Rows s, RungeKutta motion, Py_ssize_t i) noexcept nogil
 cdef bint find_jump(Rows s, RungeKutta motion, Py_ssize_t i, double h) noexcept nogil

@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.events.rows.state import Rows
     from lcpstep.kernels.clock import NUDGE
     from lcpstep.kernels.rungekutta import RungeKutta
-    from lcpstep.kernels.sudden import MORE, SUDDEN
+    from lcpstep.kernels.sudden import MORE, SUDDEN, coarseness
     from lcpstep.kernels.vectors import product
     from lcpstep.pointers import Doubles, abs, after, max
 
@@ -106,7 +106,7 @@ def go_beyond(s: Rows, q: Doubles, v: Doubles) -> bool:
     """
     if s.low != s.jump:
         return False
-    margin = 2.0 * NUDGE * max(abs(s.t0), s.scale)
+    margin = 2.0 * max(NUDGE * max(abs(s.t0), s.scale), coarseness(q, v, s.n_q))
     for j in range(s.n_q):
         q[j] = q[j] + margin * v[j]
     return True
@@ -129,6 +129,18 @@ def velocity(s: Rows, i: int, t: float, y: Doubles) -> float:
     return product(s.R, v, i, s.n_q) + s.rate[i]
 
 
+def hidden_by_rounding(s: Rows, motion: RungeKutta, i: int) -> float:
+    """By how much rounding of places hides the time of the jump just found, if row i jumps by the place; else 0."""
+    t = s.t0 + s.sudden.low
+    if s.fixed or not motion.step(s.t0, s.sudden.low):
+        return 0.0
+    v, coarse = after(motion.y_new, s.n_q), coarseness(motion.y_new, after(motion.y_new, s.n_q), s.n_q)
+    for j in range(s.n_q):
+        motion.y_new[j] += 4.0 * coarse * v[j]
+    beyond = (velocity(s, i, t, motion.y_new) - s.sudden.middle) * (s.sudden.later - s.sudden.middle) > 0.0
+    return coarse if beyond else 0.0
+
+
 def find_jump(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
     """Whether what the velocity of row i changes by within the step of size h comes by a jump; at a corner then.
 
@@ -142,7 +154,7 @@ def find_jump(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
         if not motion.step(t0, s.sudden.x):
             break
         s.sudden.take(velocity(s, i, t0 + s.sudden.x, motion.y_new))
-    t = s.sudden.just_before(t0)
+    t = s.sudden.just_before(t0, hidden_by_rounding(s, motion, i))
     if s.sudden.is_jump() and s.lies_apart(t):
         s.break_at(t)
         return True

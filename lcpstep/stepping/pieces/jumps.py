@@ -12,6 +12,7 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.sudden import coarseness
     from lcpstep.kernels.vectors import product
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED
@@ -36,7 +37,8 @@ def breaks(way: Steps, w: Work, t: float, length: float) -> bool:
     while w.sudden.seek(t):
         measure_rows(way, w, t, w.sudden.x)
         w.sudden.take(velocity(w, i))
-    place, margin = place_of(way.m, w, t), way.plan.margin
+    coarse = hidden_by_rounding(way, w, t, i)
+    place, margin = place_of(way.m, w, t, coarse), max(way.plan.margin, coarse)
     if w.sudden.is_turn():
         place, margin = t + 0.5 * (w.sudden.low + w.sudden.high), SIDES * (w.sudden.high - w.sudden.low)
     if w.sudden.is_jump() and margin <= BRIEF * length and lies_apart(w, place, margin):
@@ -47,14 +49,27 @@ def breaks(way: Steps, w: Work, t: float, length: float) -> bool:
     return False
 
 
-def place_of(m: Model, w: Work, t: float) -> float:
+def hidden_by_rounding(way: Steps, w: Work, t: float, i: int) -> float:
+    """By how much rounding of places hides the time of the jump just found, if row i jumps by the place; else 0."""
+    if way.m.flat or i >= w.n_c:
+        return 0.0
+    measure_rows(way, w, t, w.sudden.low)
+    coarse = coarseness(w.q_try, w.v_try, w.n_q)
+    for j in range(w.n_q):
+        w.q_try[j] += 4.0 * coarse * w.v_try[j]
+    gap_rates(way.m, within(w, t + w.sudden.low), w.q_try, w.v_try, w.G_try, w.gap_t_try)
+    beyond = (velocity(w, i) - w.sudden.middle) * (w.sudden.later - w.sudden.middle) > 0.0
+    return coarse if beyond else 0.0
+
+
+def place_of(m: Model, w: Work, t: float, coarse: float) -> float:
     """The time of the jump that was sought from t on: just after it, as times within the interval are before it.
 
     Where rows may jump by the place it is just before it.
     """
     if m.flat:
         return t + w.sudden.high
-    place = w.sudden.just_before(t)
+    place = w.sudden.just_before(t, coarse)
     if w.high == w.jump:  # a piece that has ended beyond it
         place = min(place, w.high - 2.0 * w.sudden.untold(t))
     return place
