@@ -81,9 +81,12 @@ class Clock:
         return min(max(t, self.low + margin), self.high - margin)
 
     def lies_apart(self, t: float) -> bool:
-        """Whether a time can be told from the ends of its smooth interval: see `inside`; it may be the base."""
+        """Whether a time can be told from the ends of its smooth interval: see `inside`; it may be the base.
+
+        The end may be where a jump was found on a motion that was less exact: it is just before that, then.
+        """
         margin = NUDGE * max(abs(t), self.scale)
-        return self.low + margin < t < self.high - margin
+        return self.low + margin < t < (self.high if self.high == self.jump else self.high - margin)
 
     def break_at(self, t: float) -> None:
         """The smooth interval at hand ends at t, as has been found; at the base where that cannot be told from it."""

@@ -5,6 +5,7 @@ cdef double MORE, PLACES, SHARE, SUDDEN
 
 @cython.final
 cdef class Sudden:
+    cdef bint narrow
     cdef double h, low, high, before, later, middle, whole, x, drift
     cdef void begin(self, double h, double before, double later) noexcept nogil
     @cython.locals(narrow=bint)

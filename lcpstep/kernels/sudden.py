@@ -32,6 +32,7 @@ class Sudden:
     low, high       the places;  before, later   the function there
     middle          between what it has been and what it becomes
     x               the place to look at
+    narrow          whether rounding tells nothing between the places any more
     drift           what steps so far have left of a velocity, and more
     """
 
@@ -41,15 +42,15 @@ class Sudden:
 
     def begin(self, h: float, before: float, later: float) -> None:
         """Seek in a step of size h, from whose begin to whose end the function changes so."""
-        self.h, self.low, self.high = h, 0.0, h
+        self.h, self.low, self.high, self.narrow = h, 0.0, h, False
         self.before, self.later = before, later
         self.middle, self.whole = 0.5 * (before + later), abs(later - before)
 
     def seek(self, t: float) -> bool:
         """Move x to the next place to look at; False where it is found, or none can be told from its neighbours."""
         narrow = self.high - self.low <= 2.0 * RESOLUTION * (abs(t) + self.high)
-        narrow = narrow or self.high <= RESOLUTION * self.h  # at time zero nothing else ends it
-        if narrow or self.is_turn():
+        self.narrow = narrow or self.high <= RESOLUTION * self.h  # at time zero nothing else ends it
+        if self.narrow or self.is_turn():
             return False
         self.x = 0.5 * (self.low + self.high)
         return True
@@ -77,8 +78,8 @@ class Sudden:
         return abs(self.later - self.before) < SHARE * self.whole
 
     def is_jump(self) -> bool:
-        """Whether what changes does so at once, as the step sees it."""
-        return self.high - self.low < SUDDEN * self.h
+        """Whether what changes does so at once, as the step sees it, which may be as short as time is told."""
+        return self.high - self.low < SUDDEN * self.h or (self.narrow and not self.is_turn())
 
     def excuse(self, u: float) -> None:
         """What a step has left of a velocity is no jump, but its error."""
