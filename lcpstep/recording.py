@@ -16,11 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import checks
 from lcpstep.kernels.layout import COLUMNS
-from lcpstep.trajectory import IMPACT_DTYPE
+from lcpstep.trajectory import IMPACT_DTYPE, Kind
 
 Array = NDArray[np.float64]
 Keep = int | str | ArrayLike
 LOGGED = np.dtype((np.record, IMPACT_DTYPE))
+KIND = list(LOGGED.names or ()).index("kind")  # its place in a line
 EVENT_CAPACITY = 4096
 LONGEST = 1 << 18  # of a buffer that stays for the next run: its numbers
 BUFFERS = threading.local()  # .lines: those of the last run of this thread
@@ -219,6 +220,16 @@ class Recorder:
         (dense,), length = self._written(self._columns[-1:]), self._columns[2]
         dense[length[: len(dense)] == 0.0] = 0.0
         return dense
+
+    def impacts(self, since: float) -> int:
+        """How many were taken with a time from `since` on."""
+        found = 0
+        for lines in reversed(self._events):
+            late = lines[lines[:, 0] >= since]
+            found += int(np.count_nonzero(late[:, KIND] == Kind.IMPACT))
+            if len(late) < len(lines):
+                break
+        return found
 
     def events(self, end: float) -> Any:
         """The impact log of a span that ends at `end`, a record array of `trajectory.IMPACT_DTYPE`."""

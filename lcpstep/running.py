@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -18,9 +19,12 @@ from lagrangian import checks
 from lcpstep.culprits import culprit
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.faults import cause
+from lcpstep.hindrance import hindrance
 from lcpstep.kernels.status import BUFFER_FULL
+from lcpstep.model import unrepeatable
 from lcpstep.pace import Pace, tell
 from lcpstep.recording import Kept, Recorder, States
+from lcpstep.standstill import Standstill
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -58,6 +62,10 @@ class Portions(ABC):
         """The initial state; a code as of `advance`."""
         return Status.DONE
 
+    def stands_still(self) -> bool:
+        """Whether it goes on without end."""
+        return False
+
     @property
     def over(self) -> bool:
         """Whether the end of the span is reached."""
@@ -74,6 +82,8 @@ class Portions(ABC):
                 self.empty()
                 progress(self.now)
                 tell(self.now - begin, end - begin)
+                if code in (BUFFER_FULL, Status.DONE) and not self.over and self.stands_still():
+                    code = Status.STEP_TOO_SMALL
             raised, result = cause(), self.trajectory(code)
         except KeyboardInterrupt:
             raise SimulationInterrupted(lambda: self.trajectory(Status.INTERRUPTED)) from None
@@ -89,11 +99,15 @@ class Run(Portions):
     ----------
     method, scene, kept : the question
     recorder : its buffers;  most : steps between two looks at the outside world
+
+    asked    whether its functions have been asked for the same twice
+    stuck    why the run does not go on though its steps do, in words
     """
 
     def __init__(self, method: Any, scene: Any, kept: Kept, recorder: Recorder, most: int) -> None:
         super().__init__(method, scene, kept, Pace(most, scene.n_q + recorder.record.n_c))
-        self.recorder = recorder
+        self.recorder, self.asked, self.stuck = recorder, False, ""
+        self.standstill = Standstill(scene.t_span, getattr(method, "h", inf))
 
     @property
     @abstractmethod
@@ -107,12 +121,32 @@ class Run(Portions):
 
     @property
     @abstractmethod
+    def horizon(self) -> float:
+        """How far ahead the run looks [s]."""
+
+    @property
+    @abstractmethod
     def counts(self) -> Counts:
         """Work done."""
 
     @abstractmethod
     def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones."""
+
+    @property
+    def tolerances(self) -> str:
+        """Of the method, in words."""
+        return f"the tolerance {self.method.tolerance:g}"
+
+    def stands_still(self) -> bool:
+        """Whether steps and events go on that take the time on by next to nothing, or without sense."""
+        look = self.standstill
+        stands = look.reached(self.done + self.recorder.taken, self.now, self.recorder.impacts)
+        if look.crawls and not (stands or self.asked):
+            self.asked, (q, v) = True, self.state
+            stands = bool(unrepeatable(self.scene, self.now, q.copy(), v.copy()))
+        self.stuck = look.words if stands else ""
+        return stands
 
     def empty(self) -> None:
         """Move what the kernels have written to the recorder's keeping."""
@@ -131,6 +165,8 @@ class Run(Portions):
         """Why the run ended early, in words."""
         if code == Status.TOO_MANY_EVENTS:
             return f"more than max_events = {self.method.max_events} events {self.where}"
+        if code == Status.STEP_TOO_SMALL:
+            return f"{self.stuck or f'{self.tolerances} cannot be met by any step'} {self.where}"
         q, v = self.state
         return f"{culprit(self.scene, self.ahead, q.copy(), v.copy())} {self.where}"
 
@@ -149,7 +185,16 @@ class Run(Portions):
         """How the run ended, in words."""
         if code == Status.DONE:
             return "reached the end of the span"
-        return f"interrupted {self.where}" if code == Status.INTERRUPTED else self.why(code)
+        if code == Status.INTERRUPTED:
+            return f"interrupted {self.where}"
+        text = self.why(code)
+        if code not in (Status.STEP_TOO_SMALL, Status.TOO_MANY_EVENTS, Status.NEWTON_FAILED):
+            return text
+        q, v = self.state
+        found = hindrance(self.scene, self.now, self.horizon, q.copy(), v.copy())
+        if not found and code == Status.STEP_TOO_SMALL:
+            found = "a larger tolerance may do"
+        return f"{text}: {found}" if found else text
 
     @property
     def where(self) -> str:

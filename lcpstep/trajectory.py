@@ -25,7 +25,7 @@ class Status(IntEnum):
     LCP_FAILED = 3  # the complementarity solver said no
     NEWTON_FAILED = 4  # the implicit step did not converge
     TOO_MANY_EVENTS = 5  # events faster than the bound allows
-    STEP_TOO_SMALL = 6  # the tolerance cannot be met
+    STEP_TOO_SMALL = 6  # the tolerance cannot be met, or only by steps without end
     JOINTS_FAILED = 7  # joints contradict each other
     PROJECTION_FAILED = 8  # no position near satisfies all joints and contacts
     ENDLESS_SWITCHING = 9  # modes follow one another for ever at one instant

@@ -14,9 +14,7 @@ from lagrangian import Scene
 from lcpstep.events.general.ends import NO_FORCES, STATUS
 from lcpstep.kernels.between import accelerated, by_dense_output, last_rows
 from lcpstep.kernels.tally import Tally
-from lcpstep.model import unrepeatable
 from lcpstep.recording import Kept, Recorder, States
-from lcpstep.room import closes_upon
 from lcpstep.running import Run
 from lcpstep.trajectory import Counts, Status
 
@@ -61,6 +59,11 @@ class EventRun(Run):
         return np.linspace(self.now, self.interval_end, TRIALS)
 
     @property
+    def horizon(self) -> float:
+        """How far ahead the run looks [s]."""
+        return self.interval_end
+
+    @property
     def counts(self) -> Counts:
         """Work done."""
         return Counts(self.tally.steps, force_evaluations=self.evaluations, events=self.tally.events)
@@ -78,18 +81,21 @@ class EventRun(Run):
         """How the run ended, by what the kernel returned."""
         return STATUS.get(code) or Status(code)
 
+    @property
+    def bound(self) -> str:
+        """Of events, that the run has gone beyond, in words."""
+        if self.tally.events <= self.method.max_events:
+            return "events without end at one time"
+        return f"more than max_events = {self.method.max_events} events"
+
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
-        if code != Status.STEP_TOO_SMALL:
-            return super().why(code)
-        q, v = self.state
-        tolerances = f"rtol = {self.method.rtol:g}, atol = {self.method.atol:g}"
-        words = f"the tolerances {tolerances} cannot be met {self.where}"
-        names = " and ".join(unrepeatable(self.scene, self.now, q.copy(), v.copy()))
-        if names:
-            return f"{words}: {names} must be functions of time and state, and are not"
-        closing = closes_upon(self.scene, self.now, q.copy())
-        return f"{closing}: {words}" if closing else words
+        return f"{self.bound} {self.where}" if code == Status.TOO_MANY_EVENTS else super().why(code)
+
+    @property
+    def tolerances(self) -> str:
+        """Of the method, in words."""
+        return f"the tolerances rtol = {self.method.rtol:g}, atol = {self.method.atol:g}"
 
 
 class Integrated(EventRun):

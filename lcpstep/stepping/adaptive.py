@@ -1,4 +1,4 @@
-"""Steps by a tolerance, as Python sees them: their sizes, and what a run says that fails.
+"""Steps by a tolerance, as Python sees them: their sizes.
 
 The control itself, what it aims at and where that comes from: `step_control`.
 """
@@ -6,12 +6,7 @@ The control itself, what it aims at and where that comes from: `step_control`.
 from __future__ import annotations
 
 import math
-from typing import Any
 
-import numpy as np
-
-from lagrangian import Scene
-from lcpstep.culprits import failing
 from lcpstep.kernels.status import BUFFER_FULL
 from lcpstep.stepping.steps import RESOLUTION, WHOLE
 from lcpstep.trajectory import Status
@@ -24,7 +19,6 @@ NOISE = 8 * RESOLUTION  # relative differences that are rounding
 PLENTY = 0.8  # of the share, that twice the step is expected to take where it is tried
 FIRST = 1e-6  # of the span: the first step
 LOOK = 4096  # attempts between two looks at the outside world, at most
-LOOKS_AHEAD = 17  # at the callbacks where no step is short enough
 
 
 def sizes(span: tuple[float, float], h: float) -> tuple[float, int, int, int]:
@@ -38,11 +32,3 @@ def sizes(span: tuple[float, float], h: float) -> tuple[float, int, int, int]:
         finest = max(0, min(finest, math.floor(math.log2(h_max / least)) - 1))
     first = max(0, min(finest, math.ceil(math.log2(h_max / (FIRST * (end - start))))))
     return h_max, coarse << finest, finest, first
-
-
-def too_small(method: Any, scene: Scene, t: float, q: Any, v: Any, where: str) -> str:
-    """A tolerance that no step meets, in words; and the callback that fails ahead in a straight line, if one does."""
-    text = f"the tolerance {method.tolerance:g} cannot be met by any step {where}"
-    ahead = np.linspace(t, max(t, min(t + method.h, scene.t_span[1])), LOOKS_AHEAD)
-    found = failing(scene, ahead, q, v)
-    return f"{text}; ahead of it {found.rstrip(';')}" if found else f"{text}; expected a larger one"

@@ -14,9 +14,8 @@ from lcpstep.faults import cause
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.running import Run
-from lcpstep.stepping.adaptive import LOOK, REACHED, WANTED, too_small
+from lcpstep.stepping.adaptive import LOOK, REACHED, WANTED
 from lcpstep.stepping.steps import divided, unresolved
-from lcpstep.trajectory import Status
 
 
 class StepRun(Run):
@@ -66,6 +65,11 @@ class StepRun(Run):
         """Whether the end of the span is reached."""
         return self.arrived if self.control is not None else self.steps >= self.stretches[-1][3]
 
+    @property
+    def horizon(self) -> float:
+        """How far ahead the run looks [s]."""
+        return min(self.now + self.method.h, self.scene.t_span[1])
+
     def advance(self, goal: int) -> int:
         """Call the kernel, for `done` to become `goal` at most; why it returned."""
         if self.control is not None:
@@ -109,9 +113,3 @@ class StepRun(Run):
         if len(s.t) and abs(s.t[-1] - end) <= unresolved(self.scene.t_span, self.method.h):
             s.t[-1] = end
         return s
-
-    def why(self, code: int) -> str:
-        """Why the run ended early, in words."""
-        if code == Status.STEP_TOO_SMALL:
-            return too_small(self.method, self.scene, self.now, *self.state, self.where)
-        return super().why(code)

@@ -66,10 +66,5 @@ class General(Integrated):
         if code == NO_SURFACE:
             return f"the obstacle of contact {s.event_contact} closes in, and leaves no room {where}"
         if code == Status.TOO_MANY_EVENTS:
-            bound = f"more than max_events = {self.method.max_events} events"
-            if self.tally.events <= self.method.max_events:
-                bound = "events without end at one time"
-            return (
-                f"{bound}; the last at contacts {s.contact.latest()}, closed are {self.closed_ones}, {where}"
-            )
+            return f"{self.bound}; the last at contacts {s.contact.latest()}, closed are {self.closed_ones}, {where}"
         return super().why(code)

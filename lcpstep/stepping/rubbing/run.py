@@ -9,10 +9,9 @@ import numpy as np
 
 from lagrangian import Scene
 from lcpstep.events.friction.run import FrictionRun, start
-from lcpstep.stepping.adaptive import FIRST, too_small
+from lcpstep.stepping.adaptive import FIRST
 from lcpstep.stepping.rubbing.steps import RubbingSteps
 from lcpstep.stepping.steps import divided
-from lcpstep.trajectory import Status
 
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
@@ -57,10 +56,14 @@ class RubbingRun(FrictionRun):
     @property
     def ahead(self) -> np.ndarray:
         """Times at which a callback may be what has failed [s]."""
-        return np.linspace(self.now, min(self.now + self.method.h, self.scene.t_span[1]), len(super().ahead))
+        return np.linspace(self.now, self.horizon, len(super().ahead))
 
-    def why(self, code: int) -> str:
-        """Why the run ended early, in words."""
-        if code == Status.STEP_TOO_SMALL:
-            return too_small(self.method, self.scene, self.now, *self.state, self.where)
-        return super().why(code)
+    @property
+    def tolerances(self) -> str:
+        """Of the method, in words."""
+        return f"the tolerance {self.method.tolerance:g}"
+
+    @property
+    def horizon(self) -> float:
+        """How far ahead the run looks [s]."""
+        return min(self.now + self.method.h, self.scene.t_span[1])

@@ -1,0 +1,45 @@
+"""Whether a run has come to a standstill: steps that go on, and hardly take the time on with them.
+
+A step may be short, and impacts as many as they like. But where so many steps, or events that are no impacts, take
+the time on by next to nothing of the span, the rest of it would take days. Where a body is to rest that one contact
+force cannot hold, or a force is no function of time and state, each step meets the tolerance, and none is long.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+STEPS = 20_000  # in a row
+PER_IMPACT = 100  # steps that the search for one may take
+# Of the span, or of what so many of the longest steps do: what they take the time on by at least, or crawl
+LEAST, CRAWL = 1e-6, 0.1
+
+
+class Standstill:
+    """Looks at a run now and then.
+
+    crawls   whether steps are so short that it is worth asking why
+    words    how short they are
+
+    Parameters
+    ----------
+    span : (start, end);  h : the longest step that the method may take [s]
+    """
+
+    def __init__(self, span: tuple[float, float], h: float) -> None:
+        self.way = min(span[1] - span[0], h * STEPS)
+        self.steps, self.since, self.words, self.crawls = 0, -math.inf, "", False
+
+    def reached(self, steps: int, now: float, impacts: Callable[[float], int]) -> bool:
+        """Whether a run that has come to this time by so many steps and events stands still.
+
+        impacts : how many there were from a time on
+        """
+        onward, taken = now - self.since, steps - self.steps
+        if taken < STEPS and onward < CRAWL * self.way:
+            return False
+        self.crawls = onward < CRAWL * self.way and taken - PER_IMPACT * impacts(self.since) >= STEPS
+        self.words = f"{taken} steps or events have taken the time on by {onward:.3g} s only"
+        self.steps, self.since = steps, now
+        return self.crawls and onward < LEAST * self.way

@@ -1,0 +1,108 @@
+"""Runs whose steps would go on without end say why they stop, and where; those that are merely long go on."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian import Contacts, Coulomb, LinearContacts, LinearSystem, Scene, System
+from lcpstep import EventDriven, Located, Moreau, Status, simulate
+from lcpstep.kinks import valley
+from lcpstep.standstill import LEAST, STEPS, Standstill
+
+FALLS = LinearSystem(np.eye(2), force=[0.0, -9.81])
+
+
+def gap(t, q, v, p, out):
+    """Slopes p[0] on the left of the kink and p[1] on its right."""
+    out[0] = q[1] - (p[0] if q[0] < 0.0 else p[1]) * q[0]
+
+
+def normal(t, q, v, p, out):
+    out[0, 0], out[0, 1] = -(p[0] if q[0] < 0.0 else p[1]), 1.0
+
+
+def tangent(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 1.0, p[0] if q[0] < 0.0 else p[1]
+
+
+def at_rest(t, q, v, p, out):
+    out[0] = 0.0
+
+
+def as_one(slopes, q, mu):
+    friction = None if mu is None else Coulomb(mu, tangent, slip=at_rest)
+    ground = Contacts(1, gap, normal, bias=at_rest, restitution=0.0, friction=friction)
+    return Scene(FALLS, q, [0.2, 0.0], (0.0, 6.0), ground, p=slopes)
+
+
+def as_two(slopes, q, mu):
+    friction = None if mu is None else Coulomb(mu, [[1.0, s] for s in slopes], slip=[0.0, 0.0])
+    planes = LinearContacts([[-s, 1.0] for s in slopes], restitution=0.0, friction=friction)
+    return Scene(FALLS, q, [0.2, 0.0], (0.0, 6.0), planes)
+
+
+@pytest.mark.parametrize("mu", [None, 0.2])
+@pytest.mark.parametrize(
+    ("method", "off"),
+    [
+        (EventDriven(), 1e-9), (Located(1e-2, tolerance=1e-5), 1e-4), (Located(1e-2, 4, tolerance=1e-6), 1e-5),
+        (Moreau(1e-2, tolerance=1e-4), 1e-3),
+    ],
+    ids=["event-driven", "order 2", "order 4", "moreau"],
+)  # fmt: skip
+def test_a_valley_given_as_one_gap_ends_a_run_where_two_contacts_would_hold_the_body(method, off, mu):
+    """Runs took steps of 1e-12 s at its bottom without end; up to there they are right."""
+    m = simulate(as_one([-0.5, 0.5], [-0.3, 0.4], mu), method)
+    assert m.status == Status.STEP_TOO_SMALL
+    assert "contact 0 has a kink" in m.message
+    assert "two contacts" in m.message
+    assert m.counts.steps < 5 * STEPS
+    assert abs(m.q[-1, 0]) < 1e-9
+    true = simulate(as_two([-0.5, 0.5], [-0.3, 0.4], mu), EventDriven(), keep=m.t)
+    assert m.q == pytest.approx(true.q, abs=off)
+
+
+@pytest.mark.parametrize("slopes", [(0.5, -0.5), (-0.5, -0.5)])
+def test_a_ridge_and_a_plane_are_no_valley(slopes):
+    assert valley(as_one(slopes, [0.0, 0.0], None), 0.0, np.zeros(2), np.zeros(2)) == ""
+
+
+def test_the_bottom_of_a_round_bowl_is_no_kink():
+    def bowl(t, q, v, p, out):
+        out[0] = q[1] - 1e3 * q[0] * q[0]
+
+    def across(t, q, v, p, out):
+        out[0, 0], out[0, 1] = -2e3 * q[0], 1.0
+
+    scene = Scene(FALLS, [0.0, 0.0], [0.0, 0.0], (0.0, 1.0), Contacts(1, bowl, across))
+    assert valley(scene, 0.0, np.zeros(2), np.zeros(2)) == ""
+
+
+@pytest.mark.parametrize(
+    "method",
+    [pytest.param(Located(1e-2, 4, tolerance=1e-6), marks=pytest.mark.slow), Moreau(1e-2, tolerance=1e-6)],
+)
+def test_a_force_that_counts_its_calls_ends_a_run_that_it_would_make_endless(method):
+    calls = itertools.count()
+
+    def grows(t, q, v, p, out):
+        out[0] = -9.81 + 1e-3 * next(calls)
+
+    m = simulate(Scene(System(1, 1.0, grows), 1.0, 0.0, (0.0, 3.0), LinearContacts([[1.0]])), method)
+    assert m.status in (Status.STEP_TOO_SMALL, Status.NEWTON_FAILED)
+    assert "force must be functions of time and state, and are not" in m.message
+
+
+def test_impacts_may_be_as_many_as_they_like():
+    """Light balls between heavy ones meet them a million times in a moment."""
+    for impacts, stands in ((STEPS // 2, False), (STEPS // 200, True)):
+        look = Standstill((0.0, 1.0), math.inf)
+        assert not look.reached(0, 0.5, lambda since: 0)
+        assert look.reached(2 * STEPS, 0.5 + 0.5 * LEAST, lambda since, n=impacts: n) is stands
+
+
+def test_steps_of_the_size_asked_for_are_no_standstill():
+    look, h = Standstill((0.0, 1.0), 1e-15), 1e-15
+    assert not any(look.reached(k, k * h, lambda since: 0) for k in range(0, 10 * STEPS, 1000))
