@@ -135,8 +135,11 @@ class Run(Portions):
 
     @property
     def tolerances(self) -> str:
-        """Of the method, in words."""
-        return f"the tolerance {self.method.tolerance:g}"
+        """What the method was given to choose its steps by, in words."""
+        m = self.method
+        if hasattr(m, "rtol"):
+            return f"the tolerances rtol = {m.rtol:g}, atol = {m.atol:g}"
+        return f"steps of {m.h:g} s" if m.tolerance is None else f"the tolerance {m.tolerance:g}"
 
     def stands_still(self) -> bool:
         """Whether steps and events go on that take the time on by next to nothing, or without sense."""
@@ -166,7 +169,12 @@ class Run(Portions):
         if code == Status.TOO_MANY_EVENTS:
             return f"more than max_events = {self.method.max_events} events {self.where}"
         if code == Status.STEP_TOO_SMALL:
-            return f"{self.stuck or f'{self.tolerances} cannot be met by any step'} {self.where}"
+            words = (
+                f"with {self.tolerances} {self.stuck}"
+                if self.stuck
+                else f"{self.tolerances} cannot be met by any step"
+            )
+            return f"{words} {self.where}"
         q, v = self.state
         return f"{culprit(self.scene, self.ahead, q.copy(), v.copy())} {self.where}"
 

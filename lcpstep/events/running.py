@@ -92,11 +92,6 @@ class EventRun(Run):
         """Why the run ended early, in words."""
         return f"{self.bound} {self.where}" if code == Status.TOO_MANY_EVENTS else super().why(code)
 
-    @property
-    def tolerances(self) -> str:
-        """Of the method, in words."""
-        return f"the tolerances rtol = {self.method.rtol:g}, atol = {self.method.atol:g}"
-
 
 class Integrated(EventRun):
     """One run whose motion between events is a chain of Runge-Kutta steps, or of constant accelerations.

@@ -59,11 +59,6 @@ class RubbingRun(FrictionRun):
         return np.linspace(self.now, self.horizon, len(super().ahead))
 
     @property
-    def tolerances(self) -> str:
-        """Of the method, in words."""
-        return f"the tolerance {self.method.tolerance:g}"
-
-    @property
     def horizon(self) -> float:
         """How far ahead the run looks [s]."""
         return min(self.now + self.method.h, self.scene.t_span[1])
