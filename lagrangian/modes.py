@@ -70,7 +70,7 @@ class Surface(Pickled):
     value : function filling out (1,)   H
     below, above : names of the modes for H < 0 and H > 0
     sliding : name of the mode of sliding
-    guards : guards that leave the sliding mode, besides its end; other surfaces are not watched while sliding
+    guards : guards that leave the sliding mode, besides its end and other surfaces of the modes beside it
     """
 
     value: Function

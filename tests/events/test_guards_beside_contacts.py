@@ -1,13 +1,27 @@
 """Guards and resets of systems with contacts: at impacts, at rest, at the start; what goes wrong is named."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from lagrangian import Guard, HybridScene, HybridSystem, LinearContacts, Mode
 from lcpstep import EventDriven, Kind, SimulationError, Status, simulate
-from tests.events.switching import FLOOR, METHOD, above, ball, falls, falls_otherwise, later, two_gravities
+from tests.events.switching import (
+    FLOOR,
+    METHOD,
+    above,
+    ball,
+    bilinear_with_wall,
+    falls,
+    falls_otherwise,
+    later,
+    left,
+    soft,
+    stiff,
+    two_gravities,
+)
 
 
 def upwards(t, x, p, out):
@@ -65,6 +79,26 @@ def test_a_reset_takes_a_resting_body_off_the_floor():
     np.testing.assert_allclose(run.impacts.time[1:], [0.5, 0.5 + math.sqrt(4.0 / 9.81)], rtol=0, atol=1e-11)
     np.testing.assert_array_equal(run.switches.after[0], [2.0, 0.0])
     np.testing.assert_array_equal(run.at(run.switches.time[0]), [2.0, 0.0])
+
+
+def to_the_start(t, x, p, out):
+    out[0], out[1] = 1.0, 0.0
+
+
+def test_a_reset_at_an_impact_leaves_no_contact_closed_where_the_body_no_longer_is():
+    """Springs push off the wall; the rebound carries the guard through zero, which sets the motion back."""
+    modes = {
+        "right": Mode(soft, [Guard(left, "left")]),
+        "left": Mode(stiff, [Guard(upwards, "right", reset=to_the_start)]),
+    }
+    lap = 0.5 * math.pi + 0.5 * math.asin(0.6)
+    run = simulate(
+        replace(bilinear_with_wall(3.3 * lap), system=HybridSystem(2, modes, mass=[[0.5]])), METHOD
+    )
+    np.testing.assert_allclose(run.impacts.time, lap * np.arange(1, 4), rtol=0, atol=1e-10)
+    np.testing.assert_allclose(
+        run.at(3.3 * lap), [math.cos(0.3 * lap), -math.sin(0.3 * lap)], rtol=0, atol=1e-10
+    )
 
 
 def unchanged(t, x, p, out):

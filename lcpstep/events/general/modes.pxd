@@ -10,6 +10,7 @@ cdef Py_ssize_t jump(Mechanism s, Record record, Tally tally) noexcept nogil
 cdef bint just_opened(Mechanism s, Py_ssize_t c) noexcept nogil
 @cython.locals(landed=bint, new=bint)
 cdef bint let_go(Mechanism s) noexcept nogil
+@cython.locals(touches=bint)
 cdef void rejoin(Mechanism s) noexcept nogil
 @cython.locals(hit=bint)
 cdef bint approaches(Mechanism s) noexcept nogil

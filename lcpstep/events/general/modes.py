@@ -110,7 +110,8 @@ def let_go(s: Mechanism) -> bool:
 def rejoin(s: Mechanism) -> None:
     """After the last impact of an instant the forces decide anew about the contacts that parted and still touch."""
     for c in range(s.n_c):
-        if s.contact.parting[c] == 1 and abs(s.contact.speed[c]) <= speed_noise(s, c):
+        touches = s.contact.gap[c] <= rounding_of_gap(s, c)  # a reset may have put it elsewhere
+        if s.contact.parting[c] == 1 and touches and abs(s.contact.speed[c]) <= speed_noise(s, c):
             s.contact.closed[c], s.contact.speed[c] = 1, 0.0
         s.contact.parting[c] = 0
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian.hybrid import HybridScene, HybridSystem
-from lagrangian.modes import BOTH, Guard
+from lagrangian.modes import BOTH, Guard, Surface
 from lcpstep import callbacks
 from lcpstep.callbacks import NotCompiled
 from lcpstep.events.hybrid.field import Machine
@@ -97,7 +97,44 @@ def _rows(
         elif name == surface.sliding:
             rows.append((None, None, 1.0, True, EXIT_BELOW, index[surface.below]))
             rows.append((None, None, 1.0, True, EXIT_ABOVE, index[surface.above]))
+            rows += _edges(system, index, surface)
     return rows
+
+
+def _edges(
+    system: HybridSystem, index: dict[str, int], surface: Surface
+) -> list[tuple[Any, Any, float, bool, int, int]]:
+    """Guards of sliding on a surface where it crosses others: beyond them one of its sides is another mode.
+
+    The motion goes on in what lies there: the mode that both sides have become, or sliding between the two, which
+    ends at once where they do not attract. Where no surface parts them the guard leads nowhere, for ever (`loop`).
+    """
+    rows, seen = [], [guard.value for guard in surface.guards]
+    for other in system.surfaces:
+        for side in (surface.below, surface.above):
+            if other is surface or side not in (other.below, other.above) or other.value in seen:
+                continue
+            from_below = side == other.below
+            beyond = {
+                _across(system, surface, mode, other.value, from_below)
+                for mode in (surface.below, surface.above)
+            }
+            target = surface.sliding
+            for parting in system.surfaces:
+                target = parting.sliding if {parting.below, parting.above} == beyond else target
+            if len(beyond) == 1:
+                (target,) = beyond
+            rows.append((other.value, None, 1.0 if from_below else -1.0, True, PLAIN, index[target]))
+    return rows
+
+
+def _across(system: HybridSystem, surface: Surface, mode: str, value: Any, from_below: bool) -> str:
+    """The mode that lies across the surface of this function, seen from a mode on one side of it; itself if none."""
+    for other in system.surfaces:
+        here, there = (other.below, other.above) if from_below else (other.above, other.below)
+        if other is not surface and other.value is value and here == mode:
+            return there
+    return mode
 
 
 def _guard_rows(guard: Guard, index: dict[str, int]) -> list[tuple[Any, Any, float, bool, int, int]]:

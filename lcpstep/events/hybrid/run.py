@@ -114,6 +114,11 @@ def undecided(scene: HybridScene, motion: Motion, status: Status, log: Array) ->
     names, t = scene.system.names, f"t = {motion.now:.12g}"
     if status == Status.ENDLESS_SWITCHING:
         chain = list(dict.fromkeys(names[int(k)] for k in log[-12:, 2]))
+        if len(chain) == 1:
+            return (
+                f"at {t} the motion slides in mode {chain[0]!r} over the edge of its surface, where another one "
+                f"crosses it: no surface parts what lies beyond; describe it, or give the mode a guard there"
+            )
         return (
             f"at {t} the modes {' -> '.join([*chain, chain[0]])} follow one another for ever at one instant, or "
             f"ever faster; where two fields point at each other, describe the switching as a lagrangian.Surface"
