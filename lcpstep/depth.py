@@ -29,6 +29,7 @@ ROUNDING = 1e-9  # of the coordinates, and of how far they could have gone: no d
 ROUNDING_BESIDE = (
     1e-12  # of how far others could have gone, in the metric of M: masses, springs, contacts couple
 )
+MANY = 100  # contacts: of more it is not asked whether they squeeze what lies between
 LONGEST = 10.0  # of the mean step: one of those that a tolerance has chosen
 
 
@@ -54,7 +55,8 @@ def too_deep(run: Trajectory) -> str:
         G = np.abs(normal(scene, int(c), states[row]))
         q, v = (np.array([x[i] for x in states]) for i in (1, 2))
         size, speed, h = float(G @ np.ptp(q, axis=0)), float(G @ np.max(np.abs(v), axis=0)), _step(run)
-        if depth <= max(share * size, steps * h * max(speed, _logged(run, int(c)))):
+        explained = depth <= steps * h * max(speed, _logged(run, int(c)))
+        if depth <= share * size or (explained and not _squeezed(run, states[row], g[row], steps * h)):
             return ""
         (fastest, masses), span = _acceleration(scene, states), scene.t_span[1] - scene.t_span[0]
     except ValueError:  # a callback that fails at a state in between, which the run has not asked it for
@@ -70,6 +72,23 @@ def too_deep(run: Trajectory) -> str:
         f"contact {c} lies {depth:.3g} m inside of its obstacle at t = {states[row][0]:.9g} s, in a motion of "
         f"{size:.3g} m towards it: the run is wrong there"
     )
+
+
+def _squeezed(run: Trajectory, at: tuple[float, Array, Array], g: Array, time: float) -> bool:
+    """Whether a state lies inside of all obstacles together by more than the motion's energy moves it in that time.
+
+    A light body that is thrown to and fro explains its own depth, but not that of a heavy one, which squeezes it.
+    Both in the metric of M: z W z is the square of the smallest way back, and contacts add up.
+    """
+    from lcpstep.lcp import solve_lcp
+
+    scene = run.scene
+    if len(run.t) < LOOKS or scene.n_c > MANY or getattr(scene.system, "sparse", False):
+        return False
+    M, G = mass(scene, *at), np.array([normal(scene, c, at) for c in range(scene.n_c)])
+    solution = solve_lcp(G @ np.linalg.solve(M, G.T), g)
+    way = time * scene.n_c * np.sqrt(2.0 * largest_energy(run))
+    return solution.status == 0 and -float(solution.z @ g) > way * way
 
 
 def _shallow(run: Trajectory, share: float) -> bool:
@@ -115,6 +134,27 @@ def normal(scene: Scene, c: int, at: tuple[float, Array, Array]) -> Array:
     return checks.evaluate("contacts.jacobian", contacts.jacobian, (*at, np.array(scene.p)), shape)[c]
 
 
+def mass(scene: Scene, t: float, q: Array, v: Array) -> Any:
+    """The mass matrix at a state, sparse where the scene's is."""
+    M: Any = scene.system.mass if isinstance(scene.system, System) else scene.system.M
+    shape = (scene.n_q, scene.n_q)
+    return checks.evaluate("system.mass", M, (t, q, v, np.array(scene.p)), shape) if callable(M) else M
+
+
+def largest_energy(run: Trajectory) -> float:
+    """The largest kinetic energy of the kept states."""
+    M: Any = getattr(run.scene.system, "M", None)
+    if M is not None:
+        return 0.5 * float(np.max(np.sum(run.v * (M @ run.v.T).T, axis=1)))
+    from lcpstep.kernels.states import power
+    from lcpstep.model import looked_at
+
+    kinetic, _ = power(looked_at(run.scene), run.t, run.q, run.v)
+    cause()  # a callback that fails beside the motion, where the run has not asked it
+    forget()
+    return float(np.max(kinetic))
+
+
 def fixed_step(method: Any) -> float:
     """Step of a method whose steps are all of one size [s]; 0 of other methods, and of steps by a tolerance."""
     return getattr(method, "h", 0.0) if getattr(method, "tolerance", None) is None else 0.0
@@ -141,13 +181,12 @@ def _acceleration(scene: Scene, states: list[tuple[float, Array, Array]]) -> tup
 def _accelerated(scene: Scene, t: float, q: Array, v: Array) -> tuple[Array, Array]:
     """The same at one state, where forces of a linear system do not cancel each other."""
     system, at, shape = scene.system, (t, q, v, np.array(scene.p)), (scene.n_q,)
+    M = mass(scene, t, q, v)
     if isinstance(system, System):
         f = checks.evaluate("system.force", system.force, at, shape)
-        M: Any = system.mass
-        M = checks.evaluate("system.mass", M, at, 2 * shape) if callable(M) else M
     else:
-        matrices: Any = system.M, system.C, system.K
-        M, C, K = matrices
+        matrices: Any = system.C, system.K
+        C, K = matrices
         if isinstance(system.force, Harmonic):
             f = np.sum(np.abs(system.force.terms(scene.n_q)), axis=0)
         else:

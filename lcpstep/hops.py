@@ -17,8 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.depth import fixed_step, normal
-from lcpstep.faults import cause, forget
+from lcpstep.depth import fixed_step, largest_energy, normal
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 LEAST = 8  # hops
@@ -55,7 +54,7 @@ def _hops(run: Trajectory, h: float, log: Any) -> str:
     told = (step > SHARE * way) & (step > AMONG * among)
     struck, step = struck[told], step[told]
     own = 0.5 * struck.impulse * struck.before**2 / (struck.after - struck.before)
-    least, most = np.array(ENERGY) * _largest_energy(run)
+    least, most = np.array(ENERGY) * largest_energy(run)
     told = (own > least) & (own < most)
     struck, step = struck[told], step[told]
     if len(struck) < LEAST or not np.median(step) < MOST * gone:
@@ -76,20 +75,6 @@ def _ways(run: Trajectory, c: int) -> tuple[float, float]:
     except ValueError:  # a callback that fails beside the motion
         return np.inf, np.inf
     return float(G @ far), float(np.sum(G) * np.max(far))
-
-
-def _largest_energy(run: Trajectory) -> float:
-    """The largest kinetic energy of the kept states."""
-    M: Any = getattr(run.scene.system, "M", None)
-    if M is not None:
-        return 0.5 * float(np.max(np.sum(run.v * (M @ run.v.T).T, axis=1)))
-    from lcpstep.kernels.states import power
-    from lcpstep.model import looked_at
-
-    kinetic, _ = power(looked_at(run.scene), run.t, run.q, run.v)
-    cause()  # a callback that fails beside the motion, where the run has not asked it
-    forget()
-    return float(np.max(kinetic))
 
 
 def _step(run: Trajectory) -> float:

@@ -164,3 +164,20 @@ def test_links_that_fly_off_together_do_not_hide_one_that_is_inside_of_another(m
     m = simulate(scene, Through(EventDriven()))
     assert m.doubt.startswith("contact 0 lies 0.3 m inside of its obstacle at t = 2 s")
     assert simulate(scene, EventDriven()).doubt == simulate(scene, Located(0.1)).doubt == ""
+
+
+def squeezing(ratio):
+    """A light body at rest between a wall and a heavy one that comes at 1 m/s; all elastic."""
+    masses = LinearSystem(np.diag([1.0, ratio]))
+    walls = LinearContacts([[1.0, 0.0], [-1.0, 1.0]], 0.0, 1.0)
+    return Scene(masses, [0.5, 1.0], [0.0, -1.0], (0.0, 3.0), walls)
+
+
+def test_a_heavy_body_that_a_light_and_fast_one_lets_through_the_wall_is_told():
+    """It turns round at sqrt(1/ratio)/2 from the wall, whatever passes between: x2 = 2 m, nearly, at the end."""
+    run = simulate(squeezing(1e8), Moreau(1e-2))
+    assert run.q[-1, 1] < -1.5
+    assert "inside of its obstacle" in run.doubt
+    resolved = simulate(squeezing(1e2), Moreau(1e-3))
+    assert resolved.q[-1, 1] == pytest.approx(2.0, abs=0.03)
+    assert resolved.doubt == ""
