@@ -14,6 +14,7 @@ from lcpstep import (
     SimulationError,
     SimulationInterrupted,
     Status,
+    continued,
     simulate,
 )
 from lcpstep.model import UncompiledCallback
@@ -200,3 +201,12 @@ def test_an_interrupted_run_keeps_what_was_computed():
     np.testing.assert_array_equal(kept.t, times)
     np.testing.assert_allclose(kept.x, part.at(times), rtol=0, atol=1e-9)
     assert list(kept.mode) == list(part.mode_at(times))
+
+
+def test_the_end_of_a_run_is_kept_whatever_else_is():
+    scene = scenes.bilinear_oscillator(t_end=40.0)
+    whole, few = simulate(scene, METHOD), simulate(scene, METHOD, keep=10**9)
+    np.testing.assert_array_equal(few.t, [0.0, 40.0])
+    np.testing.assert_array_equal(few.x, whole.x[[0, -1]])
+    assert few.mode[-1] == whole.mode[-1]
+    assert continued(few, t_end=50.0).t_span == (40.0, 50.0)

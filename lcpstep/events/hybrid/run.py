@@ -161,7 +161,7 @@ def chosen(whole: HybridTrajectory, kept: Kept) -> HybridTrajectory:
     if kept.on_events:
         t = np.unique(np.concatenate([t[:1], whole.switches.time, t[-1:]]))
     elif kept.every:
-        t = t[:: kept.every]
+        t = np.unique(np.concatenate([t[:: kept.every], t[-1:]]))
     else:
         t = kept.times[kept.times <= t[-1]]
     return replace(whole, t=t, x=whole.at(t), mode=whole.mode_at(t))
