@@ -21,6 +21,7 @@ from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.faults import cause
 from lcpstep.hindrance import hindrance
 from lcpstep.kernels.status import BUFFER_FULL
+from lcpstep.kinks import valley
 from lcpstep.model import unrepeatable
 from lcpstep.pace import Pace, tell
 from lcpstep.recording import Kept, Recorder, States
@@ -145,9 +146,10 @@ class Run(Portions):
         """Whether steps and events go on that take the time on by next to nothing, or without sense."""
         look = self.standstill
         stands = look.reached(self.done + self.recorder.taken, self.now, self.recorder.impacts)
-        if look.crawls and not (stands or self.asked):
-            self.asked, (q, v) = True, self.state
-            stands = bool(unrepeatable(self.scene, self.now, q.copy(), v.copy()))
+        if look.crawls and not stands:
+            q, v = (x.copy() for x in self.state)
+            stands = not self.asked and bool(unrepeatable(self.scene, self.now, q, v))
+            stands, self.asked = stands or bool(valley(self.scene, self.now, q, v)), True
         self.stuck = look.words if stands else ""
         return stands
 
