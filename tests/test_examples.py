@@ -215,7 +215,7 @@ def test_an_example_says_what_it_shows(name):
         "docs/large-systems.md",
         "docs/tutorial.md",
         pytest.param("docs/symbolic.md", marks=pytest.mark.slow),
-        "docs/hybrid-systems.md",
+        pytest.param("docs/hybrid-systems.md", marks=pytest.mark.slow),
         pytest.param("docs/seeing-and-keeping.md", marks=pytest.mark.slow),
         pytest.param("docs/accuracy.md", marks=pytest.mark.slow),
         pytest.param("docs/attractors.md", marks=pytest.mark.slow),

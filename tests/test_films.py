@@ -159,6 +159,7 @@ def test_the_picture_has_the_proportions_of_what_moves(run):
             assert np.all(np.ptp(used, axis=0) > [0.85 * (height - 40), 0.85 * width])
 
 
+@pytest.mark.slow
 def test_own_drawings_systems_with_modes_and_loaded_runs(run, tmp_path):
     own = replace(run.scene, drawing=ball_above)
     mine = simulate(own, Located(0.01)).animate(**SHORT)

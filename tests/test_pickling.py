@@ -78,6 +78,7 @@ def sample():
     )
 
 
+@pytest.mark.slow
 def test_trajectories_in_a_process_started_afresh():
     runs = [simulate(scene, method) for scene, method in sample()]
     with multiprocessing.get_context("spawn").Pool(1) as pool:

@@ -24,6 +24,7 @@ MEASURES = ("sup_position", "l1_velocity", "impact_time", "unmatched", "penetrat
 # --- fits
 
 
+@pytest.mark.slow
 def test_the_order_of_exact_powers_is_their_exponent():
     h = np.array([1e-1, 1e-2, 1e-3, 1e-4])
     fit = fitted_order(h, 7.0 * h**1.5)

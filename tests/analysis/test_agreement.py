@@ -67,6 +67,7 @@ def test_a_diagram_of_time_stepping_approaches_the_event_driven_one_with_order_o
     assert found[-1].phase_floor < 1e-12  # a periodic motion repeats
 
 
+@pytest.mark.slow
 def test_chaotic_columns_come_as_near_as_samples_of_one_motion():
     found = distances(np.linspace(662.0, 668.0, 4), (1e-3, 5e-5), keep=400)
     assert found[0].phase > 3.0 * found[0].phase_floor

@@ -27,6 +27,7 @@ def names(rpm, n=12, **settings):
     return {a.name: a for a in found.found}
 
 
+@pytest.mark.slow
 def test_exponents_of_known_maps():
     assert lyapunov(lambda x: 4.0 * x * (1.0 - x), [0.3], 20_000).largest == pytest.approx(
         math.log(2), abs=2e-3

@@ -60,6 +60,7 @@ def test_bifurcation_compares_two_methods_in_a_picture_a_file_and_a_table(capsys
     assert (tmp_path / "bifurcation.png").stat().st_size > 1000
 
 
+@pytest.mark.slow
 def test_basin_prints_shares_with_their_uncertainty(capsys, tmp_path):
     status, out, _ = run(
         capsys, "basin", "cam-follower", "--rpm", 358.5, "--grid", 40, 30, "--sample", 100, "--out", tmp_path

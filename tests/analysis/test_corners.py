@@ -45,6 +45,7 @@ def chain(orbit):
     return local_map(orbit)
 
 
+@pytest.mark.slow
 def test_the_orbit_of_the_cam_follower_meets_the_corner_at_the_published_speed(orbit):
     assert orbit.p == pytest.approx(673.234445, abs=5e-7)
     assert orbit.corner == 1  # where the flank meets the nose

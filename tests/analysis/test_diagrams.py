@@ -57,6 +57,7 @@ def test_time_stepping_lists_the_ends_of_chattering_where_event_driven_does():
         assert other == pytest.approx(one, abs=3e-3)
 
 
+@pytest.mark.slow
 def test_a_bound_that_is_reached_is_told_and_drawn(capsys, tmp_path):
     arguments = "bifurcation cam-follower --range 116 125 --points 3 --drop 5 --keep 2 --most 40"
     assert main([*arguments.split(), "--out", str(tmp_path / "cut")]) == 0

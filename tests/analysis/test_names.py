@@ -75,6 +75,7 @@ def test_no_attractor_is_listed_twice_at_361_5_rpm(seed):
     assert sorted(a.name for a in exact.found) == ["O(1, 2)", "chaotic"]
 
 
+@pytest.mark.slow
 def test_chattering_and_chaos_have_their_names_by_time_stepping():
     assert [a.name for a in found(125.0, Moreau(h=1e-4), 6, transient=30, window=60, longest=10).found] == [
         "O(1, chattering)"

@@ -142,6 +142,7 @@ def test_a_cycle_of_the_chattering_ball_takes_few_events(chattering):
     assert len(chattering.impacts) / (10.0 * W / (2 * math.pi)) < 60
 
 
+@pytest.mark.slow
 def test_a_chattering_ball_agrees_with_fifty_digits(chattering):
     body = Body(f0=-GRAVITY, r=E, s=table(A, W), scan=mpf(2) * mpf(math.pi) / W / 100)
     exact = motion(body, 0.02, 0.0, 1.0)

@@ -28,7 +28,7 @@ def members(a, b):
     [
         ("added", lambda x, y: x + y),
         pytest.param("subtracted", lambda x, y: x - y, marks=pytest.mark.slow),
-        ("multiplied", lambda x, y: x * y),
+        pytest.param("multiplied", lambda x, y: x * y, marks=pytest.mark.slow),
     ],
 )
 def test_bounds_hold_exact_results(name, exact):

@@ -47,6 +47,9 @@ LONG = {  # of these
     "wedge of three walls",
     "a curved joint turns a gap",
     "four feet on two tables and the ground, an hour before time zero",
+    "a heavy body squeezes light ones against a wall",
+    "a body that three walls hold on a curved joint",
+    "four feet of different restitution",
 }
 KNOWN = KEPT | LATELY | RECENTLY | JOINTED | LOOSE | OTHER
 NAMES = slow(KNOWN, *LONG)

@@ -86,7 +86,13 @@ SAME = {
 }  # fmt: skip
 
 
-LONG = "chain of 40", "chain of 20, smooth", "chain of 5", "chain, Stribeck"  # of these
+LONG = (
+    "chain of 40",
+    "chain of 20, smooth",
+    "chain of 5",
+    "chain of 5, thrown up",
+    "chain, Stribeck",
+)  # of these
 
 
 @pytest.mark.parametrize("name", slow(SAME, *LONG))
