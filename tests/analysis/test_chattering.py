@@ -85,7 +85,8 @@ def test_sequences_of_faster_cams(rpm):
     assert_sequences_are_exact(rpm, 2)
 
 
-@pytest.mark.parametrize("meeting", shared(MEETINGS, 3))
+@pytest.mark.thorough
+@pytest.mark.parametrize("meeting", MEETINGS)
 def test_the_speeds_above_are_those_at_which_a_sequence_ends_on_the_corner(meeting):
     speed, corner = meeting
 
