@@ -144,16 +144,14 @@ def first_event(s: Rubbing, h: float) -> int:
                 if parts < PARTS:
                     fine = False
                     break
-                if (
-                    s.mode[g // GUARDS] == OPEN
-                ):  # beside an edge a polynomial swings below zero, not its samples
+                # Beside an edge a polynomial swings below zero, not its samples
+                if s.mode[g // GUARDS] == OPEN:
                     copy(s.scan.c, s.scan.sample, DEGREE + 1)
             place = first_fall(s, g)
             when, risen = a + (b - a) * place, place != NONE and rises(s, g, place)
+            # By where a low hop has left its band others may have acted
             if g % GUARDS == 0 and not risen and s.lands[g // GUARDS] > 0.0:
-                when = min(
-                    when, s.lands[g // GUARDS] / h
-                )  # by where it has left its band others may have acted
+                when = min(when, s.lands[g // GUARDS] / h)
             if place != NONE and when < s.found:
                 s.guard, s.found, s.risen = g, when, risen
                 _, slope, _ = taylor(s.scan.c, place, s.scan.half)

@@ -70,8 +70,6 @@ class FrictionRun(Integrated):
         """Why the run ended early, in words."""
         if code == NO_IMPULSES:
             return f"no impulses of the contacts {self.closed_ones} end their approach {self.where}"
-        if code == Status.TOO_MANY_EVENTS and self.tally.events <= self.method.max_events:
-            return f"events without end at one time; closed are {self.closed_ones}, {self.where}"
         if code in (Status.PAINLEVE_INCONSISTENT, Status.PAINLEVE_INDETERMINATE):
             return f"{self.paradox(code)} {self.where}"
         if code == Status.NOT_FINITE and self.system.coefficients.fault():
