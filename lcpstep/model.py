@@ -78,15 +78,14 @@ def _latest(scene: Scene, made: kernels.Model, joints: kernels.Model | None = No
     return made
 
 
-def model_of_modes(scene: Scene, fields: Functions) -> kernels.Model:
-    """The same of a system whose force is that of a mode, by the fields (v, a) of all modes."""
-    own = _system(scene) | {"force": ABSENT, "modes": fields}
-    return _models(scene, own, contacts=_contacts(scene, scene.contacts))[0]
+def models(
+    scene: Scene, modes: Functions | None = None
+) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
+    """Models of the contacts, joints and tangents of a scene, any of them empty.
 
-
-def models(scene: Scene) -> tuple[kernels.Model, kernels.Model, kernels.Model]:
-    """Models of the contacts, joints and tangents of a scene, any of them empty."""
-    own = _system(scene)
+    modes : the fields (v, a) of all modes, of a system whose force is that of a mode
+    """
+    own = _system(scene) if modes is None else _system(scene) | {"force": ABSENT, "modes": modes}
     parts = {"contacts": _contacts(scene, scene.contacts)}
     if scene.n_j > 0:
         parts["joints"] = _joints(scene)

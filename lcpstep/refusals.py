@@ -104,11 +104,6 @@ REFUSALS: dict[str, Refusal] = {
         "an error bar is the distance from another method, and one alone runs systems with modes",
         "two tolerances",
     ),
-    "modes-friction": Refusal(
-        "contacts", "EventDriven of systems with modes", "friction",
-        "a switch may end sticking or turn sliding at the instant at which the contact forces change, and no one "
-        "problem decides both", "modes for sticking and sliding",
-    ),
     "modes-surfaces": Refusal(
         "surfaces", "EventDriven of systems with modes and contacts", "surfaces with sliding",
         "the contact force differs on both sides of a surface, and depends on where between them the motion slides",

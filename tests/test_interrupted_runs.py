@@ -166,7 +166,7 @@ def test_an_interrupt_that_a_callback_hears_is_the_last_of_its_run(which, method
     scene = Scene(System(1, 1.0, force), 1.0, 0.0, (0.0, 3.0), contacts=contacts)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UncompiledCallback)
-        for number in (30, 151, 302):
+        for number in (30, 75, 151):
             first[0] = calls[which] + number
             after.clear()
             with pytest.raises(SimulationInterrupted):

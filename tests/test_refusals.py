@@ -63,11 +63,6 @@ def falls_flat():
     return monodromy(scene, EventDriven(), [0.0, 0.2, 0.0, 0.5, 0.0, 0.0], (0.0, 0.3))
 
 
-def with_friction():
-    contacts = LinearContacts([[1.0]], friction=Coulomb(0.3, [[0.0]]))
-    return replace(two_gravities(), contacts=contacts)
-
-
 def height(t, x, p, out):
     out[0] = x[0] - p[2]
 
@@ -102,7 +97,6 @@ ASKED = {
     "modes-error": lambda: simulate(scenes.bilinear_oscillator(), EventDriven(), error=True),
     "modes-method": lambda: simulate(scenes.bilinear_oscillator(), Moreau(1e-2)),
     "modes-audit": lambda: simulate(scenes.bilinear_oscillator(), EventDriven(audit=True)),
-    "modes-friction": lambda: simulate(with_friction(), EventDriven()),
     "modes-surfaces": lambda: simulate(with_a_surface(), EventDriven()),
     "modes-maps": lambda: hybrid_monodromy(simulate(two_gravities(0.3), EventDriven())),
     "together": falls_flat,

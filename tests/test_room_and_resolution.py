@@ -48,6 +48,18 @@ def test_a_bowl_that_closes_upon_a_body_held_on_it_is_named():
     assert run.t[-1] == pytest.approx(math.asin(0.1) / 5.0, rel=1e-9)
 
 
+@pytest.mark.parametrize("start", [0.0, 1e-10])
+@pytest.mark.parametrize("depth", [1.08, 1.13, 1.15])
+def test_a_bowl_that_closes_upon_a_body_near_its_middle_is_named(depth, start):
+    """At sin 5t = (depth - 1) / 0.2; rounding of the gap is no way out: over its slope it is metres."""
+    scene = Scene(LinearSystem(M=1.0), start, 0.0, (0.0, 1.3), bowl(depth, 0.2, 5.0))
+    run = simulate(scene, EventDriven())
+    assert run.status is (Status.LCP_FAILED if start == 0.0 else Status.PROJECTION_FAILED)
+    assert "the obstacle of contact 0 closes in" in run.message
+    assert run.t[-1] == pytest.approx(math.asin((depth - 1.0) / 0.2) / 5.0, rel=1e-12)
+    assert run.q[-1, 0] == pytest.approx(start, abs=1e-12)
+
+
 @pytest.mark.parametrize(("when", "named"), [(0.02, False), (0.0200334, True)])
 def test_an_obstacle_closes_in_only_where_it_leaves_no_room(when, named):
     scene = Scene(LinearSystem(M=1.0, force=1.0), 0.2, 0.0, (0.0, 1.3), bowl(1.02, 0.2, 5.0))

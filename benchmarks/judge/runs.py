@@ -18,7 +18,7 @@ from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.errors import LcpStepError, SimulationError
 
 # Methods load their runs when they run: here at once, for no scene's bound has room for that
-for kernels in ("events.flight.run", "events.general.run", "stepping.moreau_run", "stepping.pieces.run"):
+for kernels in ("events.flight.run", "events.parabolas.run", "stepping.moreau_run", "stepping.pieces.run"):
     importlib.import_module(f"lcpstep.{kernels}")
 
 MAX_EVENTS = 50_000

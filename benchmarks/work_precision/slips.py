@@ -22,8 +22,7 @@ import numpy as np
 from lagrangian import Scene, scenes
 from lagrangian.scenes.belts import stick_slip_period
 from lcpstep import EventDriven, Located, Moreau, simulate
-from lcpstep.events.friction.run import FrictionRun
-from lcpstep.events.general.run import General
+from lcpstep.events.contacts.run import ContactRun
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Kind
 
@@ -56,14 +55,14 @@ EVENTS: dict[str, tuple[Callable[[float], Scene], Run]] = {
         automatic,
     ),
     "reversal, closed form": (lambda T: scenes.coulomb_oscillator(x0=9000.0, t_end=T), automatic),
-    "impact, Runge-Kutta": (lambda T: scenes.impact_oscillator(t_end=T), integrated(General)),
+    "impact, Runge-Kutta": (lambda T: scenes.impact_oscillator(t_end=T), integrated(ContactRun)),
     "slip or stop, even belt, Runge-Kutta": (
         lambda T: scenes.stick_slip_belt(t_end=T),
-        integrated(FrictionRun),
+        integrated(ContactRun),
     ),
     "reversal, Runge-Kutta": (
         lambda T: scenes.coulomb_oscillator(x0=9000.0, t_end=T),
-        integrated(FrictionRun),
+        integrated(ContactRun),
     ),
 }
 
@@ -126,7 +125,7 @@ def periods() -> None:
 
 def reference(scene: Scene, times: Any) -> Any:
     """Positions by steps of integration at the tightest tolerance."""
-    run = FrictionRun(EventDriven(1e-13, 1e-13), scene, Kept.parse(times, scene.t_span))
+    run = ContactRun(EventDriven(1e-13, 1e-13), scene, Kept.parse(times, scene.t_span))
     return run.finish(lambda t: None).q
 
 

@@ -6,7 +6,7 @@ rows held, those of sliding contacts with their friction, are
     x = -(R M^-1 C^T)^-1 (R M^-1 (F(t) - C v - K q) + bias(t)),   R = (G; T_stick),  C = (G - s mu T_slide; T_stick)
 
 so that each of the guards lambda_N >= 0, mu_s lambda_N -+ lambda_T >= 0 (sticks) and s (T v + slip) >= 0 (slides) is
-linear in q and v, which are polynomials, and has two harmonics. Source: as of `events.friction.held`.
+linear in q and v, which are polynomials, and has two harmonics. Source: as of `events.contacts.held`.
 """
 
 from __future__ import annotations

@@ -80,7 +80,7 @@ class EventDriven:
     ) -> HybridTrajectory:
         """The motion of a system with modes; see `lcpstep.simulate`."""
         if scene.contacts is not None:
-            from lcpstep.events.general.with_modes import RunWithModes
+            from lcpstep.events.contacts.with_modes import RunWithModes
 
             return RunWithModes(self, scene, kept).finish(progress)
         from lcpstep.events.hybrid.run import HybridRun
@@ -89,18 +89,18 @@ class EventDriven:
 
     def run(self, scene: Scene, kept: Kept, progress: Callable[[float], None]) -> Trajectory:
         """The motion of a scene; see `lcpstep.simulate`."""
-        from lcpstep.model import model
+        from lcpstep.model import joint_model, model
 
         if scene.contacts is not None and scene.contacts.friction is not None:
             from lcpstep.events.arcs.line import line_of
-            from lcpstep.events.friction.run import FrictionRun
+            from lcpstep.events.contacts.run import ContactRun
 
             line = line_of(scene)
             if line is not None:
                 from lcpstep.events.arcs.run import ArcRun
 
                 return ArcRun(self, scene, kept, line).finish(progress)
-            return FrictionRun(self, scene, kept).finish(progress)
+            return ContactRun(self, scene, kept).finish(progress)
         if scene.n_q == 1 and scene.n_c <= 1 and scene.n_j == 0 and isinstance(scene.system, LinearSystem):
             from lcpstep.events.flight.oscillator import oscillator_of
             from lcpstep.events.flight.run import ClosedForm
@@ -109,6 +109,13 @@ class EventDriven:
             o = oscillator_of(closed)
             if o is not None:
                 return ClosedForm(self, scene, kept, closed, o).finish(progress)
-        from lcpstep.events.general.run import General
+        if isinstance(scene.system, LinearSystem):
+            from lcpstep.events.parabolas.run import ParabolicRun, is_constant
 
-        return General(self, scene, kept).finish(progress)
+            m = model(scene)
+            joints = joint_model(scene) if scene.n_j > 0 else m
+            if is_constant(m, joints):
+                return ParabolicRun(self, scene, kept, m, joints).finish(progress)
+        from lcpstep.events.contacts.run import ContactRun
+
+        return ContactRun(self, scene, kept).finish(progress)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.events.general.ends import NO_FORCES, STATUS
+from lcpstep.events.ends import NO_FORCES, STATUS
 from lcpstep.kernels.between import accelerated, by_dense_output, last_rows
 from lcpstep.kernels.tally import Tally
 from lcpstep.recording import Kept, Recorder, States
@@ -117,6 +117,12 @@ class Integrated(EventRun):
         return list(self.system.closed_ones())
 
     @property
+    def latest(self) -> list[int]:
+        """The contacts of the last events at one time."""
+        log = self.recorder.events(self.scene.t_span[1])
+        return sorted({int(c) for c in log.contact[log.time == log.time.max(initial=-np.inf)]})
+
+    @property
     def now(self) -> float:
         """Time reached [s]."""
         return float(self.clock.t0)
@@ -145,6 +151,8 @@ class Integrated(EventRun):
         """Why the run ended early, in words."""
         if code == NO_FORCES:
             return f"no forces of the closed contacts {self.closed_ones} keep them from passing {self.where}"
+        if code == Status.TOO_MANY_EVENTS:
+            return f"{self.bound}; the last at contacts {self.latest}, closed are {self.closed_ones}, {self.where}"
         if code == Status.JOINTS_FAILED:
             return f"joint {self.system.culprit} contradicts the joints before it {self.where}"
         return f"{super().why(code)}; closed contacts {self.closed_ones}"

@@ -2,7 +2,7 @@
 
     T + V (t) - T + V (0) = work of the forces + integral of sum_c lambda_T (T v) dt      between impacts
 
-The forces lambda_T are those of the modes at hand (`events.friction.point`), at nodes of Gauss' rule between two
+The forces lambda_T are those of the modes at hand (`events.contacts.point`), at nodes of Gauss' rule between two
 kept states; what the run itself has summed up as friction impulses is not looked at.
 """
 
@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from lcpstep.diagnostics import energy
-from lcpstep.events.friction import point
-from lcpstep.events.friction.codes import OPEN, SLIDES, STICKS
-from lcpstep.events.friction.run import start
-from lcpstep.events.friction.smooth import Smooth
+from lcpstep.events.contacts import point
+from lcpstep.events.contacts.codes import OPEN, SLIDES, STICKS
+from lcpstep.events.contacts.run import start
+from lcpstep.events.contacts.smooth import Smooth
 from lcpstep.trajectory import Kind, Trajectory
 
 NODES = 6  # of Gauss' rule

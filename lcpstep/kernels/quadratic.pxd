@@ -15,6 +15,10 @@ cdef inline double first_zero(double g, double u, double half) noexcept nogil:
     return 2.0 * g / (sqrt(discriminant) - u) if discriminant >= 0.0 else inf
 
 
+cdef inline double accumulation(double u, double alpha, double r) noexcept nogil:
+    return 2.0 * u / (-alpha * (1.0 - r))
+
+
 cdef inline bint may_reach_zero(double g, double u, double half, double tau) noexcept nogil:
     if half <= 0.0:
         return g <= 0.0 or g + tau * (u + tau * half) <= 0.0

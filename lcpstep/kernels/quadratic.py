@@ -26,6 +26,11 @@ def first_zero(g: float, u: float, half: float) -> float:
     return 2.0 * g / (sqrt(discriminant) - u) if discriminant >= 0.0 else inf
 
 
+def accumulation(u: float, alpha: float, r: float) -> float:
+    """Time in which the impacts accumulate after one with u+ = u, under a constant acceleration alpha < 0."""
+    return 2.0 * u / (-alpha * (1.0 - r))
+
+
 def may_reach_zero(g: float, u: float, half: float, tau: float) -> bool:
     """Whether the gap can be zero within [0, tau]; a cheap bound, true where in doubt."""
     if half <= 0.0:  # lowest at the ends

@@ -16,6 +16,7 @@ if not cython.compiled:
 RETURNS = 2.0**-40  # relative deviation from proportion
 FOR_EVER = 1.0 - 2.0**-30  # of rho: nothing is lost
 GROWN = 2.0**-30  # of the speeds: by as much more they do not return, but where they have been measured anew
+FAINT = 2.0**13  # roundings of a speed: next to nothing beside the speeds of the instant
 CERTAIN = 2.0**-7  # of 1 - rho: what the speeds' rounding may leave of it, for the sum to be known
 
 

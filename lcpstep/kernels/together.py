@@ -3,7 +3,7 @@
 Impacts in turn,    u+ = -r u of the one that strikes,    u + W_cd p of the other,
 
 leave other speeds where the other one is first, but for elastic bodies of one mass. Source: Newton's law of impact,
-as in `events.general.impact`.
+as in `events.parabolas.impact`.
 """
 
 from __future__ import annotations

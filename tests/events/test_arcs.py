@@ -10,7 +10,7 @@ from lagrangian.scenes.belts import stick_slip_period
 from lcpstep import EventDriven, energy, simulate
 from lcpstep.events.arcs.line import line_of
 from lcpstep.events.arcs.run import ArcRun
-from lcpstep.events.friction.run import FrictionRun
+from lcpstep.events.contacts.run import ContactRun
 from lcpstep.recording import Kept
 from lcpstep.trajectory import Kind
 
@@ -18,7 +18,7 @@ from lcpstep.trajectory import Kind
 def integrated(scene, keep, tolerance=1e-12):
     """The same motion by Runge-Kutta steps."""
     method = EventDriven(tolerance, tolerance)
-    return FrictionRun(method, scene, Kept.parse(keep, scene.t_span)).finish(lambda t: None)
+    return ContactRun(method, scene, Kept.parse(keep, scene.t_span)).finish(lambda t: None)
 
 
 def drawn(seed):

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
 from lcpstep.gaps import closing_in
 from tests.marks import shared
@@ -49,6 +49,17 @@ def test_an_elastic_slit_has_no_end_and_says_so(force):
     assert "[0, 1]" in m.message
 
 
+def test_a_body_that_friction_holds_between_elastic_walls_strikes_them_for_ever():
+    """By more than the tangent of half their angle: they return it as it came; by less it comes out again."""
+    held, out = (simulate(sharp_corner(0.01, True, mu), EventDriven()) for mu in (0.0051, 0.0049))
+    assert held.status is Status.TOO_MANY_EVENTS
+    assert "without end at one time; the last at contacts [0, 1], closed are []" in held.message
+    np.testing.assert_allclose(held.impacts.after[-2:], held.impacts.after[-4:-2], rtol=1e-12)
+    assert np.min(held.impacts.after[-4:]) > 0.5
+    assert out.status is Status.DONE
+    assert np.min(np.asarray(out.scene.contacts.G) @ out.q[-1]) > 0.0
+
+
 def test_what_strikes_along_a_slit_goes_on_and_across_it_stays():
     # a point that falls along x + 2 y = 0 between two walls, struck against one of them
     n, along = np.array([1.0, 2.0]) / math.sqrt(5.0), np.array([2.0, -1.0]) / math.sqrt(5.0)
@@ -63,18 +74,29 @@ def test_what_strikes_along_a_slit_goes_on_and_across_it_stays():
     np.testing.assert_allclose(m.q, distance[:, None] * along, rtol=0, atol=1e-14)
 
 
-@pytest.mark.parametrize("stiff", [False, True], ids=["constant", "springs"])
-@pytest.mark.parametrize("angle", [0.3, 0.05, 0.01])
-def test_a_sharp_corner_is_left_after_its_many_impacts(angle, stiff):
-    # elastic, at the tip itself: as by billiards in a wedge, out again after finitely many reflections
-    G = [[0.0, 1.0], [math.sin(angle), -math.cos(angle)]]
-    scene = Scene(
+def sharp_corner(angle, stiff, mu):
+    """A body at the tip of two elastic walls, thrown into it."""
+    G, T = [[0.0, 1.0], [math.sin(angle), -math.cos(angle)]], [[1.0, 0.0], [math.cos(angle), math.sin(angle)]]
+    friction = None if mu is None else Coulomb(mu=mu, tangent=T)
+    return Scene(
         LinearSystem(M=np.eye(2), K=1e-12 * np.eye(2) if stiff else None), [0.0, 0.0], [-1.0, 0.001], (0.0, 1.0),
-        LinearContacts(G=G, restitution=1.0),
+        LinearContacts(G=G, restitution=1.0, friction=friction),
     )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("stiff", "mu"), [(False, None), (True, None), (True, 0.0)], ids=["constant", "springs", "friction"]
+)
+@pytest.mark.parametrize("angle", [0.3, 0.05, 0.01, 0.0005])
+def test_a_sharp_corner_is_left_after_its_many_impacts(angle, stiff, mu):
+    # elastic, at the tip itself: as by billiards in a wedge, out again after finitely many reflections
+    scene = sharp_corner(angle, stiff, mu)
+    G = scene.contacts.G
     m = simulate(scene, EventDriven())
     assert m.status is Status.DONE, m.message
-    assert len(m.impacts) == pytest.approx(math.pi / angle, abs=2)
+    assert len(m.impacts) == pytest.approx(
+        (math.pi - 0.001) / angle, abs=1
+    )  # unfolded, the motion is straight
     np.testing.assert_allclose(np.hypot(*m.v[-1]), math.hypot(1.0, 0.001), rtol=1e-9)
     assert np.min(np.asarray(G) @ m.q[-1]) > 0.0
 

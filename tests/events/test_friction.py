@@ -185,3 +185,13 @@ def test_two_feet_that_share_their_load_stick_and_slide_as_one():
     tau = 1.5 - begin
     x = 6.0 * (math.cos(begin) * tau - (math.sin(1.5) - math.sin(begin))) - 0.2 * G0 * tau**2
     assert abs(run.q[-1, 0] - x) < 1e-9
+
+
+@pytest.mark.parametrize("scene", [scenes.woodpecker(), scenes.slider_crank()], ids=lambda s: s.name)
+def test_an_impact_is_told_with_the_speed_that_its_law_gives(scene):
+    """To the last digit, which adding up what impulses change does not know."""
+    run = simulate(scene, EventDriven())
+    struck = run.impacts[run.impacts.kind == Kind.IMPACT]
+    restitution = np.broadcast_to(scene.contacts.restitution, scene.n_c)[struck.contact]
+    assert len(struck) > 4
+    np.testing.assert_array_equal(struck.after, -restitution * np.minimum(struck.before, 0.0))

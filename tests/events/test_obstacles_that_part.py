@@ -7,7 +7,7 @@ lie deeper are left.
 import numpy as np
 import pytest
 
-from lagrangian import LinearContacts, Scene, System
+from lagrangian import Coulomb, LinearContacts, Scene, System
 from lcpstep import EventDriven, Kind, Status, simulate
 
 
@@ -57,3 +57,79 @@ def test_a_body_on_three_feet_leaves_the_one_that_sinks():
         m = simulate(scene, EventDriven())
         assert m.status is Status.DONE
         np.testing.assert_allclose(m.q[-1], [max(rate, 0.0) * 0.4**3, 0.0], rtol=0, atol=1e-9)
+
+
+def weighed(t, q, v, p, out):
+    for i in range(q.shape[0]):
+        out[i] = 0.0
+    out[1] = -10.0
+
+
+@pytest.mark.parametrize("rates", [(0.0, -1.0), (0.0, 1.0), (1.0, 0.0), (0.2, -0.3, -0.1)])
+def test_the_highest_obstacle_alone_rubs(rates):
+    """X'' = -mu lambda / m with lambda = (m y'' + 10) / slope, of the obstacle that the body is on."""
+    slopes, mu = np.array([1.5, 3.0, 0.5])[: len(rates)], np.array([0.1, 0.3, 0.05])[: len(rates)]
+    highest = int(np.argmax(np.array(rates) / slopes))
+    normal, tangent = slopes[:, None] * [0.0, 1.0], np.ones((len(rates), 1)) * [1.0, 0.0]
+    scene = Scene(
+        System(2, 4.0 * np.eye(2), weighed), q0=[0.0, 0.0], v0=[0.6, 0.0], t_span=(0.0, 0.4), p=[*rates, 4.0],
+        contacts=LinearContacts(normal, motion=powers, friction=Coulomb(mu=mu, tangent=tangent)),
+    )  # fmt: skip
+    m = simulate(scene, EventDriven())
+    y = rates[highest] / slopes[highest] * m.t**4
+    x = 0.6 * m.t - mu[highest] / slopes[highest] * (2.5 * m.t**2 / 2.0 + y)
+    np.testing.assert_allclose(m.q, np.stack([x, y], axis=1), rtol=0, atol=1e-11)
+    assert set(m.impacts[m.impacts.kind == Kind.RELEASE].contact) == set(range(len(rates))) - {highest}
+
+
+def test_a_block_slides_to_its_rest_on_the_feet_that_are_left():
+    """Of three feet that in the middle sinks; friction below the centre loads the front one."""
+    feet = np.array([-0.5, 0.0, 0.5])
+    normal = np.stack([0.0 * feet, 1.0 + 0.0 * feet, feet], axis=1)
+    scene = Scene(
+        System(3, np.diag([1.0, 1.0, 0.1]), weighed), q0=[0.0, 0.0, 0.0], v0=[0.5, 0.0, 0.0],
+        t_span=(0.0, 0.4), p=[0.0, -0.5, 0.0, 3.0],
+        contacts=LinearContacts(normal, motion=powers, friction=Coulomb(mu=0.3, tangent=[[1.0, 0.0, 0.2]] * 3)),
+    )  # fmt: skip
+    m = simulate(scene, EventDriven())
+    np.testing.assert_allclose(m.q[-1], [0.25 / 6.0, 0.0, 0.0], rtol=0, atol=1e-11)
+    loads = [4.4 / 6.0 + 5.0 * (0.4 - 1.0 / 6.0), 0.0, 5.6 / 6.0 + 5.0 * (0.4 - 1.0 / 6.0)]
+    np.testing.assert_allclose(m.impulse.sum(axis=0)[:3], loads, rtol=0, atol=1e-7)
+
+
+def belts(t, q, v, p, out):
+    for i in range(out.shape[0]):
+        out[i] = -p[i] * t**2
+
+
+def driven(t, q, v, p, out):
+    out[0], out[1], out[2] = p[2], -10.0, 0.0
+
+
+def along_x(t, q, v, p, out):
+    for i in range(out.shape[0]):
+        out[i, 0], out[i, 1], out[i, 2] = 1.0, 0.0, 0.0
+
+
+def on_belts(rates, mu, push):
+    """A block whose feet bear 6.25 N and 3.75 N, each on a belt of its own that starts as t^2."""
+    feet = np.array([-0.3, 0.5])
+    normal = np.stack([0.0 * feet, 1.0 + 0.0 * feet, feet], axis=1)
+
+    rubbing = Coulomb(mu=mu, tangent=along_x, slip=belts)
+    return simulate(
+        Scene(
+            System(3, np.diag([1.0, 1.0, 0.1]), driven), np.zeros(3), np.zeros(3), (0.0, 0.8), p=[*rates, push],
+            contacts=LinearContacts(normal, friction=rubbing),
+        ),
+        EventDriven(),
+    )  # fmt: skip
+
+
+def test_belts_that_part_take_a_block_along_by_the_foot_that_can():
+    """The foot with the larger load keeps to its belt up to its friction; the other one has slid since the start."""
+    along = on_belts((1.0, 0.0), 0.3, 0.0)  # 2 t + 1.125 = 1.875 at t = 0.375
+    at, v = 0.375**3 / 3.0, 0.375**2
+    assert along.q[-1, 0] == pytest.approx(at + v * 0.425 + 0.75 * 0.425**2 / 2.0, abs=1e-9)
+    pushed = on_belts((0.0, 1.0), 0.6, 4.0)  # the other foot holds, as the first cannot: 4 + 2.25 > 3.75
+    assert pushed.q[-1, 0] == pytest.approx(0.8**3 / 3.0, abs=1e-9)

@@ -15,8 +15,8 @@ from typing import Any
 
 import cython
 
+from lcpstep.events.contacts.codes import REVERSE, SLIP, STAYS_CLOSED, STICK_TANGENT
 from lcpstep.events.flight.contact import SLACK
-from lcpstep.events.friction.codes import REVERSE, SLIP, STAYS_CLOSED, STICK_TANGENT
 from lcpstep.kernels.status import DONE
 
 if not cython.compiled:

@@ -43,6 +43,8 @@ class HybridTrajectory(Answer):
     counts : Counts   steps, evaluations of the field, switches (`events`)
     scene, method : the question, and how it was answered
     impulse : (n, n_c)   impulse of each contact since the state before [N s], the contact force's included
+    friction_impulse : (n, n_c)   impulse of each contact's friction since the state before [N s]; no columns
+        without friction
     impacts : record array, the log of the contacts as of a `Trajectory`, or None where there are none
     """
 
@@ -57,6 +59,7 @@ class HybridTrajectory(Answer):
     counts: Counts
     pieces: Pieces
     impulse: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    friction_impulse: Array = field(default_factory=lambda: np.zeros((0, 0)))
     impacts: Any = None
 
     def at(self, t: ArrayLike) -> Array:

@@ -23,10 +23,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errors import LcpStepError
-from lcpstep.events.friction import point
-from lcpstep.events.friction.codes import OPEN, RELATIVE_STEP, SLIDES, STICKS
-from lcpstep.events.friction.run import start
-from lcpstep.events.friction.smooth import Smooth
+from lcpstep.events.contacts import point
+from lcpstep.events.contacts.codes import OPEN, RELATIVE_STEP, SLIDES, STICKS
+from lcpstep.events.contacts.run import start
+from lcpstep.events.contacts.smooth import Smooth
 from lcpstep.lengths import ASIDE, derivative, lengths, sizes
 from lcpstep.maps.saltation.blow import Blow
 from lcpstep.maps.saltation.finished import closed_at_once, with_friction
@@ -276,7 +276,7 @@ class Walk:
         return H_x, float(slope)
 
     def trigger(self, before: Piece, events: Any) -> tuple[int, int]:
-        """Contact and number of the guard (`events.friction.guards`) that has acted first."""
+        """Contact and number of the guard (`events.contacts.guards`) that has acted first."""
         struck = sorted(
             {int(e.contact) for e in events if e.kind == Kind.IMPACT and before.mode[e.contact] == OPEN}
         )

@@ -1,6 +1,6 @@
 """The first event within a step with friction, and its time, as kernels.
 
-Over a step each guard (`events.friction.guards`) is a polynomial of degree three at most: gaps and sliding velocities
+Over a step each guard (`events.contacts.guards`) is a polynomial of degree three at most: gaps and sliding velocities
 from their values and slopes at the ends, forces from their values there and, with order four, between. Where its
 Bernstein coefficients keep one sign it has no zero. A zero that it has is put right by steps of that length, secants
 from one to the next, so that the guard is zero in the motion that is taken.
@@ -14,12 +14,12 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.friction.codes import OPEN, SLIDES
+from lcpstep.events.contacts.codes import OPEN, SLIDES
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import rubs
-    from lcpstep.events.friction.guards import first_fall, low_flight, read
-    from lcpstep.events.friction.state import GUARDS
+    from lcpstep.events.contacts.equations import rubs
+    from lcpstep.events.contacts.guards import first_fall, low_flight, read
+    from lcpstep.events.contacts.state import GUARDS
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
     from lcpstep.events.rows.equations import measure_biases, renew_rates, size_of
     from lcpstep.kernels.clock import NOISE, RESOLUTION
@@ -64,7 +64,7 @@ def widen_bands(s: Strides) -> None:
                 * (size_of(s.rows, i, s.rate[i], s.v) + s.h * size_of(s.rows, i, s.bias[i], s.a_free)),
             )
             s.band[g] = max(s.band[g], NOISE * s.atol)
-        elif s.mode[c] == SLIDES:
+        elif s.mode[c] == SLIDES and rubs(s, c):
             g, i = g + 1, i + s.n_c
             s.band[g] = NOISE * (
                 size_of(s.rows, i, s.rate[i], s.v) + s.h * size_of(s.rows, i, s.bias[i], s.a_free) + s.atol
@@ -84,7 +84,7 @@ def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: D
         i = s.n_j + c
         if s.mode[c] == OPEN:
             slope[GUARDS * c] = product(s.R, v, i, s.n_q) + s.rate[i]
-        elif s.mode[c] == SLIDES:
+        elif s.mode[c] == SLIDES and rubs(s, c):
             turn = product(s.R, a, i + s.n_c, s.n_q) + s.bias[i + s.n_c]
             slope[GUARDS * c + 1] = s.direction[c] * turn
     return True

@@ -17,8 +17,8 @@ from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP
 if not cython.compiled:
     from math import pow
 
-    from lcpstep.events.friction.state import GUARDS
-    from lcpstep.events.friction.step import mark_resting
+    from lcpstep.events.contacts.state import GUARDS
+    from lcpstep.events.contacts.step import mark_resting
     from lcpstep.events.rows.jumps import farthest_off, find_jump
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import copy, distance, largest

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.events.friction.run import FrictionRun, start
+from lcpstep.events.contacts.run import ContactRun, start
 from lcpstep.stepping.adaptive import FIRST
 from lcpstep.stepping.rubbing.steps import RubbingSteps
 from lcpstep.stepping.steps import divided
@@ -21,7 +20,7 @@ ROUNDING = (
 )
 
 
-class RubbingRun(FrictionRun):
+class RubbingRun(ContactRun):
     """A run by steps of one size, the last one shortened where they do not divide the span, or by a tolerance."""
 
     method: Located
@@ -45,13 +44,6 @@ class RubbingRun(FrictionRun):
         span = scene.t_span[1] - scene.t_span[0]
         system.next_step = FIRST * span if method.tolerance else h
         return system
-
-    def trajectory(self, code: int) -> Any:
-        """Everything computed so far; of a scene without friction no impulses of it."""
-        run, contacts = super().trajectory(code), self.scene.contacts
-        if contacts is not None and contacts.friction is not None:
-            return run
-        return replace(run, friction_impulse=np.zeros((len(run.t), 0)))
 
     @property
     def ahead(self) -> np.ndarray:

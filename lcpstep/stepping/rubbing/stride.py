@@ -1,4 +1,4 @@
-"""A step with friction, up to the first event within it, as kernels; the counterpart of `events.friction.step`."""
+"""A step with friction, up to the first event within it, as kernels; the counterpart of `events.contacts.step`."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import cython
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
-    from lcpstep.events.friction.equations import add_impulse, measure
-    from lcpstep.events.friction.held import count_impulses, hold_modes
-    from lcpstep.events.friction.impact import still
-    from lcpstep.events.friction.keep import keep, keep_event
-    from lcpstep.events.friction.modes import decide, undecided
-    from lcpstep.events.friction.moments import of_sliding
-    from lcpstep.events.friction.state import GUARDS
-    from lcpstep.events.friction.step import arrive, find_standing, mark_resting, of_force
+    from lcpstep.events.contacts.equations import add_impulse, measure
+    from lcpstep.events.contacts.held import count_impulses, hold_modes
+    from lcpstep.events.contacts.impact import still
+    from lcpstep.events.contacts.keep import keep, keep_event
+    from lcpstep.events.contacts.modes import decide, undecided
+    from lcpstep.events.contacts.moments import of_sliding
+    from lcpstep.events.contacts.state import GUARDS
+    from lcpstep.events.contacts.step import arrive, find_standing, mark_resting, of_force
     from lcpstep.events.rows.jumps import breaks
     from lcpstep.events.rows.projection import project
     from lcpstep.kernels.clock import NOISE

@@ -1,5 +1,5 @@
 cimport cython
-from lcpstep.events.friction.smooth cimport Smooth
+from lcpstep.events.contacts.smooth cimport Smooth
 from lcpstep.pointers cimport Doubles
 
 cdef Py_ssize_t ARRIVAL

@@ -19,8 +19,8 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
-    from lcpstep.events.friction.smooth import Smooth
-    from lcpstep.events.friction.state import GUARDS
+    from lcpstep.events.contacts.smooth import Smooth
+    from lcpstep.events.contacts.state import GUARDS
     from lcpstep.kernels.vectors import add, clear, copy, finite
     from lcpstep.pointers import after, min
 

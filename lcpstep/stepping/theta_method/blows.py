@@ -11,7 +11,7 @@ next, still in the step, by the same law from the velocities at hand:
 until no active contact approaches any more. Blows that ever halve what is left end in a plastic one of all contacts.
 No blow raises the energy, and none of them waits for a step of its own, in which bodies would move on.
 
-Source: the same sequence of problems as of impacts at one instant in `events.general.modes`, `jump`.
+Source: the same sequence of problems as of impacts at one instant in `events.parabolas.modes`, `jump`.
 """
 
 from __future__ import annotations

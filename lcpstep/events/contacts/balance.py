@@ -1,0 +1,101 @@
+"""Contacts that open where forces balance, as kernels: whether their accelerations are known.
+
+Where forces cancel, what is left of their sum is rounding. How large that is the sum does not tell, nor does a force
+that is a function of the state. But forces that balance do so for a moment: an acceleration that is nothing beside
+what it will be in a moment says nothing, and the forces a little later decide (`loop.look_on`).
+
+The moment is so short that a hop within it cannot be told from rest.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.contacts.codes import OPEN
+from lcpstep.kernels.status import DONE, NOT_FINITE
+
+if not cython.compiled:
+    from lcpstep.events.contacts.equations import force_noise, measure
+    from lcpstep.events.contacts.held import (
+        accelerate_as_held,
+        accelerate_on_joints,
+    )
+    from lcpstep.events.contacts.modes import adopt_modes, decide
+    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.contacts.surfaces import touching
+    from lcpstep.kernels.vectors import clear, product
+    from lcpstep.pointers import abs, min
+
+MOMENT, SHORTEST, SHORTER = 1e-4, 1e-9, 0.1  # of the next step; and how much shorter where a hop can be told
+DOUBTFUL = 10.0  # of what an acceleration changes by in a moment: larger ones are no rounding
+
+
+def opens_any(s: Rubbing) -> bool:
+    """Whether a closed contact opens, by `decide`."""
+    some = False
+    for c in range(s.n_c):
+        some = some or (s.mode[c] != OPEN and s.new_mode[c] == OPEN)
+    return some
+
+
+def reconsider(s: Rubbing, t: float, longest: float) -> int:
+    """`decide` anew at the base state, where a contact opens by none but an acceleration that is known; a status.
+
+    What is not known is left in `doubt`.
+    """
+    h, share = min(s.next_step, longest), MOMENT
+    while share >= SHORTEST:
+        if not foresee(s, t, share * h):
+            return NOT_FINITE
+        if cannot_be_told(s, share * h):
+            code = decide(s)
+            if code != DONE or not pulls(s):
+                return code
+            break
+        share *= SHORTER
+    clear(s.doubt, s.n_r)
+    return decide(s)
+
+
+def pulls(s: Rubbing) -> bool:
+    """Whether a contact that is closed in doubt would have to pull by more than the doubt.
+
+    Walls that are nearly parallel take from two such forces, which cancel, what they hold in the little that is left.
+    """
+    for c in range(s.n_c):
+        s.tried[c] = s.mode[c]
+    some = adopt_modes(s) != DONE
+    accelerate_as_held(s)
+    noise = force_noise(s)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        doubtful = s.mode[c] != OPEN and s.doubt[i] > 0.0 and s.W[i * s.n_r + i] > 0.0
+        some = some or (doubtful and s.multiplier[i] < -noise - s.doubt[i] / s.W[i * s.n_r + i])
+        s.mode[c] = s.tried[c]
+    return some
+
+
+def foresee(s: Rubbing, t: float, tau: float) -> bool:
+    """What the accelerations of the rows, with joints alone, change by from t to t + tau, into `doubt`."""
+    n = s.n_q
+    accelerate_on_joints(s)
+    for i in range(s.n_r):
+        s.doubt[i] = product(s.R, s.a, i, n) + s.bias[i]
+    for j in range(n):
+        s.seen[j] = s.q[j] + tau * s.v[j]
+        s.seen[n + j] = s.v[j] + tau * s.a[j]
+    if not measure(s, t + tau, s.seen):
+        return False
+    accelerate_on_joints(s)
+    for i in range(s.n_r):
+        s.doubt[i] = DOUBTFUL * abs(product(s.R, s.a, i, n) + s.bias[i] - s.doubt[i])
+    return measure(s, t, s.y)
+
+
+def cannot_be_told(s: Rubbing, tau: float) -> bool:
+    """Whether the contacts that open rise no higher than rounding by an acceleration in doubt, while it is."""
+    untold, long = True, DOUBTFUL * tau
+    for c in range(s.n_c):
+        if s.mode[c] != OPEN and s.new_mode[c] == OPEN:
+            untold = untold and s.doubt[s.n_j + c] * long * long <= touching(s, c)
+    return untold

@@ -1,0 +1,14 @@
+"""Modes of a contact with friction, what comes next in a run, and what is logged."""
+
+from __future__ import annotations
+
+from lcpstep.trajectory import Kind
+
+# Mode of a contact. One that leans does not slide either, but has all the friction that it can: another one, which
+# sticks, keeps it from sliding
+OPEN, STICKS, SLIDES, LEANS = range(4)
+BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH = range(6)  # what comes next
+LOOKED, ENTERED, JUMPED = range(3)  # whether guards of modes wait to be looked at, and why
+IMPACT, ACCUMULATION, STAYS_CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE, JAM = (int(kind) for kind in Kind)
+RELATIVE_STEP = 7.4e-5  # of differences of the field, of fourth order: eps^(1/5)/10
+EDGE = 1e-9  # relative distance of a friction force from the edge of its cone, below which it is on it; and alike

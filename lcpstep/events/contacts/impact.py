@@ -1,0 +1,262 @@
+"""Impacts with friction of all contacts that are closed at one time, as kernels.
+
+    xi = u+ + r u-  on normals and tangents,  0 <= xi_N  complementary to  p_N >= 0,  p_T = -mu p_N sign(xi_T)
+
+Moreau's law: with one restitution for normals and tangents of all that strike together it creates no energy; with
+none on the tangents it is Newton's, and may. Impacts integrated over their impulse, in turn: `kernels.energetic`.
+Source: J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988).
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.contacts.codes import ACCUMULATION, IMPACT, JAM, JUMP, OPEN, SLIDES, STICKS
+from lcpstep.events.ends import NO_IMPULSES
+from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
+
+if not cython.compiled:
+    from lcpstep.events.contacts.cycle import fades, look_back, recurs, sum_up
+    from lcpstep.events.contacts.equations import (
+        apply,
+        measure,
+        measure_velocities,
+        sliding,
+        speed_tolerance,
+    )
+    from lcpstep.events.contacts.held import stop_rows
+    from lcpstep.events.contacts.parting import approaches, let_go, rejoin
+    from lcpstep.events.contacts.problem import fill, list_unknowns, row_of
+    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.equations import size_of
+    from lcpstep.events.rows.held import hold_joints
+    from lcpstep.kernels.clock import NOISE
+    from lcpstep.kernels.coulomb import solve_contacts
+    from lcpstep.kernels.energetic import strike_in_turn
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.recurrence import FOR_EVER, looks_back
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import clear, copy
+    from lcpstep.pointers import abs, after, inf, max, min
+
+ROUNDS = 100_000  # problems of impacts at one instant
+STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
+
+
+def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+    """Impacts until no contact on its surface approaches; those that are left without speed are closed.
+
+    Impacts that go to and fro are summed where they fade in proportion, and have no end where all returns as it was;
+    others, as in a wedge that closes, end in a plastic one of all contacts that touch, if there is friction.
+    """
+    most = ROUNDS if s.n_t == 0 else 2 * ROUNDS
+    if s.rounds == 0:
+        s.stalled = tally.stalled
+    while s.rounds < most:
+        if not approaches(s):
+            rejoin(s)
+            find_free(s)
+            if tally.stalled > s.stalled + 1:  # the impacts of one instant count as one
+                tally.stalled = s.stalled + 1
+            return DONE
+        if record.full(4 * s.n_c + 4):
+            return BUFFER_FULL
+        if tally.events > tally.max_events:
+            return TOO_MANY_EVENTS
+        ratio = recurs(s) if s.rounds > 0 else 0.0
+        if ratio >= FOR_EVER:
+            if not fades(s):
+                return TOO_MANY_EVENTS if can_rest(s) else NO_IMPULSES
+        elif ratio > 0.0:
+            sum_up(s, record, tally, t, ratio)
+        else:
+            if looks_back(s.rounds):
+                look_back(s)
+            if s.rounds > 0 and not s.in_turn and not let_go(s, t):
+                return NOT_FINITE
+            s.rounds += 1
+            if not strike(s, record, tally, t, s.rounds > ROUNDS):
+                return NO_IMPULSES
+    return TOO_MANY_EVENTS
+
+
+def strike(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) -> bool:
+    """The impact of contacts that are closed or approach, or a plastic one of all that touch; False: none found.
+
+    What is held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, the
+    impact is a plastic one.
+    """
+    look_before(s)
+    if strike_together(s, record, tally, t, plastic):
+        return True
+    return not plastic and strike_together(s, record, tally, t, True)
+
+
+def look_before(s: Rubbing) -> None:
+    """The velocities before an impact."""
+    for c in range(s.n_c):
+        s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
+        if s.mode[c] == STICKS:
+            take_for_none(s, c)
+        s.free[c] = 1
+
+
+def can_rest(s: Rubbing) -> bool:
+    """Whether a plastic impact would bring to rest what is struck in turn for ever: not between walls that close."""
+    look_before(s)
+    for c in range(s.n_c):
+        s.tried[c] = s.mode[c]
+    n_a, n_f = gather(s, True)
+    found = find_impulses(s, n_a, n_f, True)
+    for c in range(s.n_c if found else 0):
+        s.mode[c] = s.tried[c]
+    return found
+
+
+def take_for_none(s: Rubbing, c: int) -> None:
+    """What contact c, which sticks, has of a sliding velocity is rounding, unless its obstacle has just jumped."""
+    i, T = s.n_c + c, s.n_j + s.n_c + c
+    if abs(s.velocity[T]) <= still(s, T):
+        s.terms[i] = max(s.terms[i], abs(s.velocity[T]))
+        s.velocity[T] = 0.0
+
+
+def strike_together(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) -> bool:
+    """`strike` by one of the laws, from the velocities before it."""
+    n_a, n_f = gather(s, plastic)
+    if not find_impulses(s, n_a, n_f, plastic):
+        return False
+    strike_with(s, record, tally, t, n_a, n_f, -1, plastic)
+    return True
+
+
+def gather(s: Rubbing, plastic: bool) -> tuple[int, int]:
+    """The contacts that take part in an impact, and their problem; how many, and how many have unknown friction."""
+    for c in range(s.n_c):
+        least = s.terms[c] if s.parting[c] == 0 else -s.terms[c]
+        if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= least):
+            s.mode[c] = SLIDES
+    s.coefficients.use(s.problem.mu)
+    hold_joints(s.rows)
+    n_a, n_f = list_unknowns(s)
+    fill(s, n_a, n_f)
+    return n_a, n_f
+
+
+def strike_with(
+    s: Rubbing, record: Record, tally: Tally, t: float, n_a: int, n_f: int, jammed: int, plastic: bool
+) -> None:
+    """Apply the impulses found, and close or open the contacts by the velocities that they leave.
+
+    A plastic one stands for impacts without end, and is told as such where the law of a contact is another.
+    """
+    for a in range(n_a + n_f):
+        apply(s, row_of(s, a, n_a), s.problem.impulse[a])
+    hold_joints(s.rows)
+    stop_rows(s)
+    measure_velocities(s, s.v)
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        u = s.velocity[s.n_j + c]
+        if s.problem.impulse[a] > 0.0:
+            if jammed < 0 and not (plastic or s.in_turn or s.thrown[c] == 1):
+                u = 0.0 - s.model.restitution[c] * min(s.before[c], 0.0)  # by the law
+            kind = ACCUMULATION if plastic and s.model.restitution[c] > 0.0 else IMPACT
+            kind = JAM if c == jammed else kind
+            before = 0.0 if s.thrown[c] == 1 else s.before[c]  # its obstacle takes it along
+            s.clock.log(record, tally, t, c, kind, before, u, s.problem.impulse[a])
+            s.since[c], s.struck[c], s.carried[c] = t - s.struck[c], t, 0
+        s.mode[c], s.thrown[c] = OPEN if u > s.terms[c] else SLIDES, 0
+
+
+def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
+    """Impulses of n_a contacts, n_f of them with tangents, by the law of impact; False where there are none.
+
+    An obstacle whose velocity jumps takes along what lies on it: u- = 0.
+    """
+    own = s.in_turn or plastic
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        r = 0.0 if s.thrown[c] == 1 else s.model.restitution[c]
+        s.problem.rate[a] = s.before[c] if own else (1.0 + r) * min(s.before[c], 0.0)
+        s.problem.slow[a] = inf if s.thrown[c] == 1 else 0.0
+    for f in range(n_f):
+        c = s.problem.ids[s.problem.carrier[f]]
+        share = 1.0 if own or s.thrown[c] == 1 else 1.0 + s.tangential[c]
+        s.problem.rate[n_a + f] = share * s.velocity[s.n_j + s.n_c + c]
+    if s.in_turn and not plastic:
+        return strike_in_turn(s.problem, s.model.restitution, n_a, n_f, -1)
+    return solve_contacts(s.problem, n_a, n_f)
+
+
+def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+    """The impact without collision of the contact that jams (`culprit`), at the base state; a status.
+
+    Its force grows beyond all bounds while it slides: an impulse that presses it together until the sliding ends, and
+    what follows of the impact. By the laws that do not integrate it the normal has no restitution, as u- = 0.
+    """
+    if not measure(s, t, s.y):
+        return NOT_FINITE
+    if record.full(4 * s.n_c + 4):
+        return BUFFER_FULL
+    hit, first = s.culprit, -1
+    copy(s.instant, s.impulse, s.n_r)
+    for c in range(s.n_c):
+        s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
+        s.free[c], s.touches[c] = 1, 1 if s.mode[c] != OPEN else 0
+    s.coefficients.use(s.problem.mu)
+    hold_joints(s.rows)
+    n_a, n_f = list_unknowns(s)
+    fill(s, n_a, n_f)
+    for a in range(n_a):
+        s.problem.rate[a] = 0.0
+        s.problem.slow[a] = 0.0 if s.in_turn else inf
+        if s.problem.ids[a] == hit:
+            first = a
+    for f in range(n_f):
+        s.problem.rate[n_a + f] = s.velocity[s.n_j + s.n_c + s.problem.ids[s.problem.carrier[f]]]
+    done = first >= 0 and strike_in_turn(s.problem, s.model.restitution, n_a, n_f, first)
+    if not (done and s.problem.impulse[first] > 0.0):
+        return PAINLEVE_INCONSISTENT
+    s.jams += 1
+    strike_with(s, record, tally, t, n_a, n_f, hit, False)
+    clear(s.problem.slow, s.n_c)
+    s.next = JUMP
+    return DONE
+
+
+def find_free(s: Rubbing) -> None:
+    """Which closed contacts have no sliding velocity; the direction of the others.
+
+    What an impact keeps from sliding it leaves without speed but for rounding. Beside hops of a chattering slower
+    sliding than the tolerance is no rest: to stop it would feed them without end.
+    """
+    for c in range(s.n_c):
+        s.free[c] = 1 if is_free(s, c) else 0
+        if s.n_t > 0 and s.free[c] == 1:
+            s.velocity[s.n_j + s.n_c + c] = 0.0
+        elif s.free[c] == 0:
+            s.direction[c] = 1.0 if sliding(s, c) > 0.0 else -1.0
+
+
+def is_free(s: Rubbing, c: int) -> bool:
+    """Whether contact c has no sliding velocity, between or after the impacts of an instant."""
+    if s.n_t == 0:
+        return True
+    least = s.terms[s.n_c + c] if s.rounds > 0 else still(s, s.n_j + s.n_c + c)
+    return abs(sliding(s, c)) <= least
+
+
+def still(s: Rubbing, i: int) -> float:
+    """The velocity of row i below which it is zero."""
+    return NOISE * size_of(s.rows, i, s.rate[i], s.v) + STILL * speed_tolerance(s, i)
+
+
+def forget_terms(s: Rubbing) -> None:
+    """A new instant: what rounding leaves of gap velocities is that of the velocities at hand."""
+    s.rounds = 0
+    copy(s.instant, s.impulse, s.n_r)
+    clear(s.terms, 2 * s.n_c)
+    for c in range(s.n_c):
+        s.parting[c] = s.thrown[c] = 0
+    measure_velocities(s, after(s.y, s.n_q))

@@ -1,0 +1,250 @@
+"""The event-driven loop for any number of contacts and joints, with friction or without, as kernels.
+
+Between events every contact is open, sticks or slides in one direction, and the motion is smooth (`held`); a guard
+that falls through zero ends that (`guards`). Contacts that meet strike (`impact`), then the forces decide about the
+modes that follow (`modes`). Without friction there are no tangents, and what is closed slides. Systems that have
+modes of their own: `switching`. Source: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (Wiley
+1996).
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.contacts.codes import (
+    BEGIN,
+    ENTERED,
+    JUMP,
+    JUMPED,
+    LOOKED,
+    MOVE,
+    OPEN,
+    SETTLE,
+    SLIDES,
+    STAYS_CLOSED,
+    SWITCH,
+)
+from lcpstep.events.ends import NO_FORCES
+from lcpstep.kernels.status import DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
+
+if not cython.compiled:
+    from lcpstep.events.contacts.balance import opens_any, reconsider
+    from lcpstep.events.contacts.chatter import close_small
+    from lcpstep.events.contacts.equations import add_impulse, measure, measure_velocities
+    from lcpstep.events.contacts.guards import begin_guards
+    from lcpstep.events.contacts.impact import forget_terms, jam, jump, still
+    from lcpstep.events.contacts.keep import keep, keep_event
+    from lcpstep.events.contacts.loose import find_loose
+    from lcpstep.events.contacts.modes import adopt_modes, decide, obey, undecided
+    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
+    from lcpstep.events.contacts.switching import look_at_guards, switch
+    from lcpstep.events.rows.jumps import drive_joints, go_beyond
+    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import clear
+    from lcpstep.pointers import abs, max, min
+
+# Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
+LOOK_AHEAD, FURTHER = 1e-6, 10.0
+NO_TIME = (
+    2.0**-50
+)  # of the interval looked at: stretches of motion this short take no time, nor do roundings of it
+
+
+class Course(Events):
+    """A motion with friction; s : Rubbing."""
+
+    def __init__(self, s: Rubbing, record: Record, tally: Tally) -> None:
+        super().__init__(record, tally, record.event_capacity - record.event_capacity // 2)
+        self.s = s
+
+    def stage(self, goal: int) -> int:
+        """Whether there is an event, or the motion goes on."""
+        if self.s.next != MOVE:
+            return DUE
+        return AHEAD if self.s.clock.t0 < self.s.t_end and self.tally.steps < goal else ARRIVED
+
+    def happen(self) -> int:
+        """The event, or what follows from it; a status."""
+        return yielding(self.s, self.record, self.tally, occur(self.s, self.record, self.tally))
+
+    def move(self) -> int:
+        """A step of the motion, or what precedes it; a status."""
+        return yielding(self.s, self.record, self.tally, go_further(self.s, self.record, self.tally))
+
+    def keep_now(self) -> None:
+        """Keep the state at the base time, called from Python."""
+        keep(self.s, self.record, self.s.clock.t0, self.s.y)
+
+
+def occur(s: Rubbing, record: Record, tally: Tally) -> int:
+    """What comes next, at one time; a status."""
+    if s.next == BEGIN:
+        return begin(s)
+    if s.next == JUMP:
+        code = jump(s, record, tally, s.clock.t0) if come_to_rest(s) else NOT_FINITE
+        if code == DONE:
+            s.next = SETTLE
+        s.guards = ENTERED if s.guards == ENTERED else JUMPED
+        return code
+    if s.next == SWITCH:
+        s.next = JUMP
+        return switch(s, tally)
+    settles, s.next = s.next == SETTLE, MOVE
+    return settle(s, record, tally) if settles else follow(s, record, tally)
+
+
+def yielding(s: Rubbing, record: Record, tally: Tally, code: int) -> int:
+    """The same status, but for a contact that jams where that ends in an impact; nothing jams without friction."""
+    if code == PAINLEVE_INCONSISTENT and s.n_t == 0:
+        return NO_FORCES
+    if code == PAINLEVE_INCONSISTENT and s.yields and s.culprit >= 0:
+        return jam(s, record, tally, s.clock.t0)
+    return code
+
+
+def go_further(s: Rubbing, record: Record, tally: Tally) -> int:
+    """A step of the motion, or what precedes it; a status."""
+    if s.watched and s.guards != LOOKED:
+        look_at_guards(s)
+        return DONE
+    if record.row == 0 and record.n_times == 0:
+        keep(s, record, s.clock.t0, s.y)
+        return DONE
+    return turn_corner(s) if s.clock.t0 >= s.clock.high else progress(s, record, tally)
+
+
+def progress(s: Rubbing, record: Record, tally: Tally) -> int:
+    """One step of the motion, up to an event; those that take no time are counted, for rounding may ask for them."""
+    t = s.clock.t0
+    code = s.proceed(record, tally)
+    if code == DONE and s.rows.n_kept < s.n_j and come_apart(s):
+        code = JOINTS_FAILED
+    moment = max(NO_TIME * s.scan_length, s.clock.untold(0.0))
+    tally.stalled = tally.stalled + 1 if s.clock.t0 - t <= moment else 0
+    return code
+
+
+def begin(s: Rubbing) -> int:
+    """The state at the start of the span, where gaps that are zero to rounding or the tolerance are closed."""
+    s.clock.find_corners(s.clock.t0)
+    if not measure(s, s.clock.t0, s.y):
+        return NOT_FINITE
+    find_closed(s)
+    forget_terms(s)
+    s.next = JUMP
+    return DONE
+
+
+def turn_corner(s: Rubbing) -> int:
+    """Beyond a corner, where obstacles and belts may have jumped in speed, contacts strike and modes are sought.
+
+    As without friction: u- of a closed contact is that before the jump, and its obstacle takes the body along.
+    """
+    s.clock.find_corners(s.clock.t0)
+    go_beyond(s.rows, s.y, s.v)
+    if not measure(s, s.clock.t0, s.y):
+        return NOT_FINITE
+    forget_terms(s)
+    if drive_joints(s.rows, s.v):
+        for m in range(s.rows.n_held):
+            add_impulse(s, s.rows.row[m], s.rows.held[m])
+        measure_velocities(s, s.v)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        s.touches[c] = 1 if s.mode[c] != OPEN else 0
+        if s.mode[c] != OPEN and abs(s.velocity[i]) > still(s, i):
+            s.mode[c], s.thrown[c] = OPEN, 1
+    s.next = JUMP
+    return DONE
+
+
+def settle(s: Rubbing, record: Record, tally: Tally) -> int:
+    """Forces and modes at the base state, where `free` says which contacts do not slide; hops that end."""
+    t = s.clock.t0
+    for turn in range(s.n_c + 1):
+        if not measure(s, t, s.y):
+            return NOT_FINITE
+        code = seek_modes(s, record, tally, t)
+        if code == DONE:
+            code = obey(s, record, tally, t)
+        if code != DONE:
+            return code
+        if turn == s.n_c or not close_small(s, record, tally, t):
+            break
+    return set_out(s, record, t)
+
+
+def seek_modes(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+    """New modes at the base state just measured, or a little later where it leaves them open; a status."""
+    longest = min(s.scan_length, min(s.t_end, s.clock.high) - t)
+    code = decide(s)
+    if s.rows.n_kept < s.n_j and contradict(s):
+        return JOINTS_FAILED
+    if code == DONE and opens_any(s):
+        code = reconsider(s, t, longest)
+    if code == DONE and undecided(s):
+        for c in range(s.n_c):
+            s.tried[c] = s.new_mode[c]
+        code = look_on(s, t, longest)
+        if code == DONE:
+            tell_left(s, record, tally, t)
+    clear(s.doubt, s.n_r)
+    return code
+
+
+def look_on(s: Rubbing, t: float, longest: float) -> int:
+    """The modes just after the base time, at which the forces leave some of them open; a status.
+
+    A contact whose force begins at zero is decided by the first force that can be told from zero.
+    """
+    ahead = LOOK_AHEAD * longest
+    while 0.0 < ahead <= longest:
+        s.culprit = -1
+        code = adopt_modes(s)
+        if code != DONE:
+            return code
+        if not (s.rates(t, s.y, s.K) and s.step(t, ahead) and measure(s, t + ahead, s.y_new)):
+            return PAINLEVE_INCONSISTENT if s.culprit >= 0 else NOT_FINITE
+        code = decide(s)
+        if code != DONE:
+            return code
+        if not undecided(s):
+            break
+        ahead *= FURTHER
+    code = adopt_modes(s)
+    for c in range(s.n_c):
+        s.new_mode[c] = s.mode[c]
+    if code != DONE:
+        return code
+    return DONE if measure(s, t, s.y) else NOT_FINITE
+
+
+def tell_left(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
+    """Log as closed what has just come to its surface, is closed there (`tried`), and leaves by a force that begins.
+
+    That it leaves is logged by `obey`.
+    """
+    for c in range(s.n_c):
+        if s.was_mode[c] == OPEN and s.tried[c] != OPEN and s.new_mode[c] == OPEN:
+            s.clock.log(record, tally, t, c, STAYS_CLOSED, 0.0, s.velocity[s.n_j + c], 0.0)
+            s.was_mode[c] = SLIDES
+
+
+def follow(s: Rubbing, record: Record, tally: Tally) -> int:
+    """Obey the modes that `look_ahead` has found."""
+    code = obey(s, record, tally, s.clock.t0)
+    return set_out(s, record, s.clock.t0) if code == DONE else code
+
+
+def set_out(s: Rubbing, record: Record, t: float) -> int:
+    """The motion goes on with the modes at hand."""
+    find_loose(s)
+    if not begin_guards(s, t):
+        return NOT_FINITE
+    for c in range(s.n_c):
+        s.touches[c] = 1 if s.mode[c] != OPEN else 0
+    keep_event(s, record, t)
+    return DONE

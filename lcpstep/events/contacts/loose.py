@@ -1,0 +1,129 @@
+"""Rows at rest that depend on those held, as kernels: until when these keep them there.
+
+Of walls around a body, or feet of one, those held keep the others closed, and from sliding, as long as obstacles and
+belts go alike. Where these part, however slowly, the acceleration of a row that is not held is no longer zero: its
+contact opens, or bears what the others have borne, or slides, and new modes are sought.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.contacts.codes import OPEN, SLIDES
+from lcpstep.kernels.dop853 import STAGES
+
+if not cython.compiled:
+    from lcpstep.events.contacts.equations import rubs
+    from lcpstep.events.contacts.held import right_hand_side
+    from lcpstep.events.contacts.state import GUARDS, Rubbing
+    from lcpstep.events.rows.equations import renew_biases, renew_rates, size_of_acceleration
+    from lcpstep.events.rows.held import is_held
+    from lcpstep.kernels.clock import NOISE, RESOLUTION
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import Doubles, abs, after, max, min
+
+NEAR = 1e-3  # of the way to either end of where it is sought: how well a time is known
+DRIFT = 1e-9  # of the terms of an acceleration: one that the rows held do not keep at zero
+# Of the time in which it grows to that from what rounding hides: how much earlier it begins; one of power 8 in time
+EARLIER = 0.35
+MORE = 4.0  # times such an acceleration: what is left where it was, or kept by other rows, is looked at again
+
+
+def find_loose(s: Rubbing) -> None:
+    """How many contacts have a row at rest that is not held and may leave it, as modes begin."""
+    s.loose = 0
+    for c in range(s.n_c if s.rows.moving or not s.rows.fixed else 0):
+        if s.mode[c] != OPEN and is_loose(s, c):
+            s.loose += 1
+        else:
+            s.stray[c] = 0.0
+
+
+def is_loose(s: Rubbing, c: int) -> bool:
+    """Whether closed contact c has a row at rest that is not held."""
+    i = s.n_j + c
+    sticks = s.mode[c] != SLIDES and rubs(s, c)
+    return not is_held(s.rows, i) or (sticks and not is_held(s.rows, i + s.n_c))
+
+
+def forget_strays(s: Rubbing) -> None:
+    """All rows are at rest where a step begins, as far as has been seen."""
+    s.kept_to, s.shown, s.delay = 0.0, 2.0, 0.0
+
+
+def notice(s: Rubbing, place: float, t: float) -> None:
+    """Look at the rows at the fraction `place` of a step, at time t, where guards have just been looked at.
+
+    Up to `kept_to` they have been at rest, and they are no longer at `shown`.
+    """
+    if s.loose == 0 or s.shown <= 1.0 or place == 0.0:
+        return
+    a = after(s.dy, s.n_q)
+    if place == 1.0:
+        a = after(s.K, STAGES * s.n + s.n_q)
+        renew_biases(s.rows, t, s.y_new, after(s.y_new, s.n_q))
+    if straying(s, a, DRIFT) < 0:
+        s.kept_to = place
+    else:
+        s.shown = place
+
+
+def first_stray(s: Rubbing, h: float, g: int) -> int:
+    """The first row that leaves its rest within the step of size h, as a guard of its contact, or the guard g found.
+
+    When goes into `found`, as of other guards, and how much later it shows into `delay`.
+    """
+    low, high = s.kept_to, min(s.shown, s.found)
+    c = straying_at(s, high, h, DRIFT) if low < high else -1
+    if c < 0:
+        return g
+    high = first_beyond(s, low, high, h, DRIFT)
+    place = first_beyond(s, 0.0, high, h, NOISE)
+    s.found = max(0.0, place - EARLIER * (high - place))
+    s.guard, s.risen, s.delay = GUARDS * c, False, high - s.found
+    s.stray[c] = MORE * max(1.0, s.stray[c])
+    return s.guard
+
+
+def first_beyond(s: Rubbing, low: float, high: float, h: float, level: float) -> float:
+    """Where between low and high, at which it is, an acceleration comes to be beyond that share of its terms."""
+    a, b = low, high
+    while b - a > max(NEAR * min(b - low, high - a), RESOLUTION):
+        middle = 0.5 * (a + b)
+        if straying_at(s, middle, h, level) >= 0:
+            b = middle
+        else:
+            a = middle
+    return b
+
+
+def straying_at(s: Rubbing, place: float, h: float, level: float) -> int:
+    """`straying` at that fraction of the step of size h; -1 where a state is not finite."""
+    t = s.clock.t0 + place * h
+    s.at(place, s.seen)
+    if not right_hand_side(s, t, s.seen, s.dy):
+        return -1
+    if s.rows.n_held == 0:
+        renew_rates(s.rows, t, s.seen, after(s.seen, s.n_q))
+        renew_biases(s.rows, t, s.seen, after(s.seen, s.n_q))
+    return straying(s, after(s.dy, s.n_q), level)
+
+
+def straying(s: Rubbing, a: Doubles, level: float) -> int:
+    """The first contact that has a row leave its rest under the acceleration a, or -1; rows and biases are known."""
+    for c in range(s.n_c):
+        i, mode, least = s.n_j + c, s.mode[c], level * max(1.0, s.stray[c])
+        if mode != OPEN and (strays(s, i, a, least) or (mode != SLIDES and strays(s, i + s.n_c, a, least))):
+            return c
+    return -1
+
+
+def strays(s: Rubbing, i: int, a: Doubles, least: float) -> bool:
+    """Whether row i is not held and has, under a, an acceleration of more than that share of its terms."""
+    alpha = 0.0 if is_held(s.rows, i) else abs(product(s.R, a, i, s.n_q) + s.bias[i])
+    if alpha == 0.0:
+        return False
+    size = size_of_acceleration(s.rows, i, a)
+    for k in range(s.n_r):
+        size += abs(s.W[i * s.n_r + k] * s.multiplier[k])
+    return alpha > least * size

@@ -1,0 +1,288 @@
+"""Which closed contacts stick, slide or open, as kernels: the complementarity problem of accelerations.
+
+    0 <= alpha  complementary to  lambda_N >= 0,    lambda_T = -mu lambda_N sign(gamma)
+
+gamma is the sliding velocity, or its rate where that is zero. For a contact that slides, lambda_N and alpha are one
+linear complementarity problem whose matrix may fail to be positive: it has no answer then, or two (Painleve).
+
+Sources: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (Wiley 1996), chapter 6; F. Genot,
+B. Brogliato, New results on Painleve paradoxes, European Journal of Mechanics A/Solids 18 (1999) 653.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.contacts.codes import (
+    EDGE,
+    LEANS,
+    OPEN,
+    SLIDES,
+    STICKS,
+)
+from lcpstep.events.ends import NO_FORCES
+from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
+
+if not cython.compiled:
+    from lcpstep.events.contacts.bracing import braced
+    from lcpstep.events.contacts.equations import force_noise
+    from lcpstep.events.contacts.held import (
+        accelerate_as_held,
+        accelerate_on_joints,
+        hold_modes,
+    )
+    from lcpstep.events.contacts.keep import tell
+    from lcpstep.events.contacts.problem import fill, list_unknowns, row_of, solve_forces
+    from lcpstep.events.contacts.several import opened_or_closed
+    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.equations import size_of_acceleration
+    from lcpstep.events.rows.held import constrain
+    from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
+    from lcpstep.kernels.clock import NOISE
+    from lcpstep.kernels.coulomb import motion_of
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.repose import moves, stay
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.pointers import abs, after, max
+
+LEANING = (
+    1e-12  # of accelerations that hang together: as much solving for the forces leaves of one that is none
+)
+
+
+def decide(s: Rubbing) -> int:
+    """New modes of the closed contacts at the state just measured, in `new_mode` and `new_direction`; a status.
+
+    `free` says which contacts may stick: their sliding velocity is zero. The others slide as `direction` says.
+    """
+    for c in range(s.n_c):
+        s.new_mode[c], s.new_direction[c], s.new_loaded[c] = OPEN, s.direction[c], 0
+    accelerate_on_joints(s)
+    for c in range(s.n_c):
+        s.problem.mu[c] = s.mu_s[c] if s.free[c] == 1 else s.mu[c]
+    begins = True
+    while True:
+        n_a, n_f = list_unknowns(s)
+        if n_a == 0:
+            return DONE
+        fill(s, n_a, n_f)
+        for a in range(n_a + n_f):
+            s.problem.rate[a] = acceleration_on_joints(s.rows, row_of(s, a, n_a), s.a)
+        code = find_forces(s, n_a, n_f)
+        if code != DONE:
+            return code
+        if begins and n_f > 1:
+            rest_where_possible(s, n_a, n_f)
+        begins = False
+        if not (s.coefficients.two and begin_to_slide(s, n_a, n_f)):
+            read_modes(s, n_a, n_f)
+            return DONE
+
+
+def rest_where_possible(s: Rubbing, n_a: int, n_f: int) -> None:
+    """Take forces that leave what is at rest there for those found, where there are such and these do not."""
+    some = False
+    for f in range(n_f):
+        pressed = s.problem.impulse[s.problem.carrier[f]] > 0.0
+        some = some or (pressed and moves(s.problem, s.problem.impulse, n_a + f, n_a + n_f))
+    if some:
+        for a in range(n_a):
+            c = s.problem.ids[a]
+            s.problem.sum[a] = 1.0 if s.free[c] == 0 and s.coefficients.rough[c] == 1 else 0.0
+        stay(s.problem, n_a, n_f)
+
+
+def begin_to_slide(s: Rubbing, n_a: int, n_f: int) -> bool:
+    """Give those that the forces found do not keep from sliding the coefficient of what slides; are there any?"""
+    some = False
+    for f in range(n_f):
+        c, rate = s.problem.ids[s.problem.carrier[f]], acceleration(s, n_a + f, n_a, n_f)
+        goes = abs(rate) > NOISE * size_of_terms(s, n_a + f, n_a, n_f)
+        if goes and s.problem.mu[c] != s.mu[c]:
+            s.problem.mu[c] = s.mu[c]
+            some = True
+    return some
+
+
+def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
+    """Solve; a sliding contact whose own mobility is not positive has no answer, or two; so may several together."""
+    m, jams = n_a + n_f, -1
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        if s.free[c] == 0 and can_bear(s.rows, c) and s.problem.mobility[a * m + a] <= 0.0:
+            jams = a
+    if jams >= 0:
+        s.culprit = s.problem.ids[jams]
+        if n_a == 1:
+            return PAINLEVE_INCONSISTENT if s.problem.rate[0] < 0.0 else PAINLEVE_INDETERMINATE
+    if not solve_forces(s, n_a, n_f):
+        return PAINLEVE_INCONSISTENT if jams >= 0 else NO_FORCES
+    other = opened_or_closed(s.problem, n_a) if jams < 0 and n_f == 0 else -1
+    if other >= 0:
+        s.culprit = s.problem.ids[other]
+    return PAINLEVE_INDETERMINATE if jams >= 0 or other >= 0 else DONE
+
+
+def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:
+    """Modes from the forces of the problem and the accelerations that they leave."""
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        if s.problem.impulse[a] > 0.0:
+            s.new_loaded[c] = 1
+            s.new_mode[c] = SLIDES
+        elif not opens(s, a, n_a, n_f):
+            s.new_mode[c] = SLIDES
+    for f in range(n_f):
+        k = s.problem.carrier[f]
+        c, force, rate = s.problem.ids[k], s.problem.impulse[n_a + f], acceleration(s, n_a + f, n_a, n_f)
+        limit = s.problem.mu[c] * s.problem.impulse[k]
+        if s.new_mode[c] == OPEN:
+            continue
+        if limit > 0.0 and abs(force) < limit * (1.0 - EDGE):
+            s.new_mode[c] = STICKS
+        elif limit > 0.0:
+            s.new_direction[c] = 1.0 if force < 0.0 else -1.0
+            if abs(rate) <= LEANING * size_of_coupled(s, n_a + f, n_a, n_f):
+                s.new_mode[c] = LEANS
+            elif rate * s.new_direction[c] < 0.0:  # large forces have hidden that it does not slide
+                s.new_mode[c] = STICKS
+        else:
+            s.new_direction[c] = 1.0 if rate >= 0.0 else -1.0
+
+
+def undecided(s: Rubbing) -> bool:
+    """Whether the forces leave the mode of a contact open, after `decide`: those that come decide about it.
+
+    It has no normal force, and none would be needed. Where nothing pulls along it either it sticks meanwhile.
+    """
+    n_a, n_f = list_unknowns(s)
+    some = False
+    for a in range(n_a):
+        if idles(s, a, n_a, n_f):
+            some = True
+            s.new_loaded[s.problem.ids[a]] = 0
+    for f in range(n_f):
+        a, T = s.problem.carrier[f], n_a + f
+        if idles(s, a, n_a, n_f) and is_nothing(s, T, acceleration(s, T, n_a, n_f), n_a, n_f):
+            s.new_mode[s.problem.ids[a]] = STICKS
+    return some
+
+
+def idles(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
+    """Whether the contact of unknown a has neither a normal force nor an acceleration, with it or without.
+
+    One whose normal the joints hold never has: nothing decides about it.
+    """
+    if not can_bear(s.rows, s.problem.ids[a]):
+        return False
+    push = s.problem.mobility[a * (n_a + n_f) + a] * s.problem.impulse[a]
+    free = is_nothing(s, a, s.problem.rate[a], n_a, n_f)
+    return free and is_nothing(s, a, push, n_a, n_f) and not opens(s, a, n_a, n_f)
+
+
+def is_nothing(s: Rubbing, a: int, alpha: float, n_a: int, n_f: int) -> bool:
+    """Whether an acceleration of unknown a's row is zero as far as it is known."""
+    return abs(alpha) <= NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s, a, n_a)]
+
+
+def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
+    """The acceleration of unknown a's row under the forces found."""
+    return motion_of(s.problem, s.problem.impulse, a, n_a + n_f)[0]
+
+
+def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
+    """Whether the contact of unknown a, which carries no force, accelerates away."""
+    known = NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s, a, n_a)]
+    return acceleration(s, a, n_a, n_f) > known
+
+
+def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
+    """Size of the terms of the same acceleration, their signs left aside."""
+    m, size = n_a + n_f, size_of_acceleration(s.rows, row_of(s, a, n_a), s.a)
+    for b in range(m):
+        size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
+    return size
+
+
+def size_of_coupled(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
+    """The largest size of terms among the accelerations that one hangs together with: joints share their rounding."""
+    m, size = n_a + n_f, size_of_terms(s, a, n_a, n_f)
+    for b in range(m):
+        if s.problem.mobility[a * m + b] != 0.0:
+            size = max(size, size_of_terms(s, b, n_a, n_f))
+    return size
+
+
+def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+    """Take over the modes decided, and hold their rows; log what has changed."""
+    code = adopt_modes(s)
+    if code == DONE:
+        tell(s, record, tally, t)
+    return code
+
+
+def adopt_modes(s: Rubbing) -> int:
+    """Take over the modes decided, and hold their rows, or others that carry the load where these do not."""
+    take_over(s)
+    stands = hold_modes(s)
+    if stands and not braced(s):
+        take_over(s)
+        stands = hold_modes(s)
+    return DONE if stands else PAINLEVE_INCONSISTENT
+
+
+def take_over(s: Rubbing) -> None:
+    """The modes decided; what leans on others sticks where these, or nothing but it, can carry it."""
+    leaning = 0
+    for c in range(s.n_c):
+        s.mode[c], s.direction[c], s.loaded[c] = s.new_mode[c], s.new_direction[c], s.new_loaded[c]
+        s.touches[c] = 1 if s.mode[c] != OPEN else s.touches[c]
+        leaning += s.mode[c] == LEANS
+    if leaning > 0 and not stand(s):
+        stand_alone(s)
+
+
+def stand_alone(s: Rubbing) -> None:
+    """Of those that lean those stick that nothing else keeps from sliding, until their forces leave the cone.
+
+    What is wedged, or stands on three feet, leans with the forces found: with a tangent held a normal may have none.
+    """
+    for c in range(s.n_c):
+        if s.mode[c] == LEANS and not (hold_modes(s) and is_carried(s, s.n_j + s.n_c + c)):
+            s.mode[c] = STICKS
+
+
+def is_carried(s: Rubbing, i: int) -> bool:
+    """Whether row i depends on the rows held: what moves it alone does not, once these are kept."""
+    return abs(gives(s, i)) <= EDGE * s.W[i * s.n_r + i]
+
+
+def gives(s: Rubbing, i: int) -> float:
+    """What an impulse along row i makes of its velocity once the rows held are kept, and of all, into `dv`."""
+    copy(s.dv, after(s.MR, i * s.n_q), s.n_q)
+    clear(s.shifted_rate, s.n_r)
+    constrain(s.rows, s.dv, s.shifted_rate)
+    return product(s.R, s.dv, i, s.n_q)
+
+
+def stand(s: Rubbing) -> bool:
+    """Let those that stick carry what others lean on them with, if they can; modes are as before where they cannot.
+
+    Feet that share a direction may brace themselves against each other: their forces are known in sum alone.
+    """
+    for c in range(s.n_c):
+        s.mode[c] = STICKS if s.mode[c] == LEANS else s.mode[c]
+    stands = hold_modes(s)
+    if stands:
+        accelerate_as_held(s)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        if s.mode[c] == STICKS:
+            most = (1.0 - EDGE) * s.mu_s[c] * s.multiplier[i]
+            stands = stands and abs(s.multiplier[i + s.n_c]) < most
+        elif s.mode[c] == SLIDES:
+            stands = stands and s.multiplier[i] >= -force_noise(s)
+    for c in range(s.n_c):
+        s.mode[c] = s.mode[c] if stands else s.new_mode[c]
+    return stands

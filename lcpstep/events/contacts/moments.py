@@ -1,0 +1,124 @@
+"""When a guard acts that is known to act within a step: its root, by steps that end there, as kernels.
+
+A force, or a belt, that jumps at a time that is no corner of the scene takes its guard through zero without a root:
+halving finds the time. The modes are decided by the force beyond it; where a belt jumps, as at a corner.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.contacts.codes import SLIDES
+from lcpstep.kernels.dop853 import STAGES
+
+if not cython.compiled:
+    from lcpstep.events.contacts.guards import UNKNOWN, look, look_at_stage
+    from lcpstep.events.contacts.impact import still
+    from lcpstep.events.contacts.state import GUARDS, Rubbing
+    from lcpstep.events.rows.jumps import find_jump
+    from lcpstep.kernels.clock import NOISE, RESOLUTION
+    from lcpstep.kernels.vectors import copy
+    from lcpstep.pointers import abs, after, min
+
+REFINEMENTS = 6  # of an event's time by repeated steps
+NEAR = 1e-5  # of a step: a way this short needs none, the trapezoidal rule leaves nothing of it but rounding
+
+
+def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
+    """Time from now at which guard g acts: secants on steps of that length, of which the last one is left, complete.
+
+    UNKNOWN where a state is not finite.
+    """
+    t0, change = s.clock.t0, 0.0
+    tau = min(s.found * h, longest)
+    if tau <= 0.0:
+        return 0.0
+    for k in range(REFINEMENTS + 1):
+        if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new)):
+            return UNKNOWN
+        change = missing(s, g)
+        if abs(change) <= NEAR * tau or abs(change) > 1e-3 * h or k == REFINEMENTS:
+            break
+        if tau + change <= 0.0:  # of so short a way the polynomial knows more than secants
+            break
+        tau = min(tau + change, longest)
+    if not s.complete(t0, tau):
+        return UNKNOWN
+    if abs(change) <= NEAR * tau:
+        tau = creep(s, g, tau, change, longest)
+    return close_in(s, g, tau, min(h, longest)) if tau != UNKNOWN and jumps(s, g, tau) else tau
+
+
+def jumps(s: Rubbing, g: int, tau: float) -> bool:
+    """Whether guard g is far from zero where its slope says that it is zero: a force has jumped, or a belt."""
+    least = still(s, s.n_j + s.n_c + g // GUARDS) if of_sliding(s, g) else s.band[g]
+    return abs(s.value[g]) > least and abs(missing(s, g)) > NOISE * (abs(s.clock.t0) + tau)
+
+
+def turns_at_once(s: Rubbing, g: int, tau: float, h: float) -> bool:
+    """Whether guard g, a sliding velocity located at tau, is turned by a belt that jumps: a corner then.
+
+    What begins to slide, within its band, has no slope there that would tell: the step of size h tells.
+    """
+    if s.risen:
+        if tau <= 0.0 or s.value[g] >= 0.0 or not jumps(s, g, tau):  # at once, and not looked at
+            return False
+        s.clock.break_at(s.clock.t0 + tau)
+        return True
+    if find_jump(s.rows, s, s.n_j + s.n_c + g // GUARDS, h):
+        return True
+    if tau > 0.0:
+        s.step(s.clock.t0, tau)
+        s.complete(s.clock.t0, tau)
+    return False
+
+
+def close_in(s: Rubbing, g: int, tau: float, longest: float) -> float:
+    """The same by halving, down to the rounding of the time, just after the jump; where it has none, tau."""
+    t0, low, high = s.clock.t0, 0.0, longest
+    if s.value[g] < 0.0:
+        high = tau
+    else:
+        low = tau
+    falls = s.step(t0, high) and look_at_stage(s, STAGES, t0 + high, s.y_new) and s.value[g] < 0.0
+    while falls and high - low > 2.0 * RESOLUTION * (abs(t0) + high):
+        middle = 0.5 * (low + high)
+        if not (s.step(t0, middle) and look_at_stage(s, STAGES, t0 + middle, s.y_new)):
+            return UNKNOWN
+        if s.value[g] < 0.0:
+            high = middle
+        else:
+            low = middle
+    tau = high if falls else tau
+    if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new) and s.complete(t0, tau)):
+        return UNKNOWN
+    return tau
+
+
+def of_sliding(s: Rubbing, g: int) -> bool:
+    """Whether guard g is a sliding velocity."""
+    return s.mode[g // GUARDS] == SLIDES and g % GUARDS == 1
+
+
+def missing(s: Rubbing, g: int) -> float:
+    """How much later guard g acts than at the state last looked at."""
+    return -s.value[g] / s.slope if s.slope < 0.0 and s.risen else 0.0
+
+
+def creep(s: Rubbing, g: int, tau: float, change: float, longest: float) -> float:
+    """Go on from the end of the step of length tau by the little that is missing; how far that is from the base."""
+    t, f, gone = s.clock.t0 + tau, after(s.K, STAGES * s.n), 0.0
+    if abs(change) <= 2.0 * RESOLUTION * (abs(s.clock.t0) + tau):
+        return tau
+    copy(s.y_stage, s.y_new, s.n)
+    copy(s.dy, f, s.n)
+    for k in range(REFINEMENTS):
+        gone = min(gone + change, longest - tau)
+        for i in range(s.n):
+            s.y_new[i] = s.y_stage[i] + 0.5 * gone * (f[i] + s.dy[i])
+        if not look(s, t + gone, s.y_new):
+            return UNKNOWN
+        change = missing(s, g)
+        if k > 0 and abs(change) <= 2.0 * RESOLUTION * abs(t):
+            break
+    return tau + gone

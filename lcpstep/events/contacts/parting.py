@@ -1,0 +1,69 @@
+"""Contacts that the forces open between impacts of one instant, as kernels; see `events.parabolas.modes.let_go`.
+
+Time goes on between two impacts, if by less than can be told: what has parted passes no impulse on until it strikes
+again. So a plastic contact beside an elastic one, which the forces let go, comes to rest by ever closer impacts.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.contacts.codes import OPEN, SLIDES
+from lcpstep.kernels.status import DONE
+
+if not cython.compiled:
+    from lcpstep.events.contacts.equations import measure
+    from lcpstep.events.contacts.held import hold_modes
+    from lcpstep.events.contacts.modes import decide
+    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.held import constrain
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import abs
+
+
+def part_before(s: Rubbing) -> None:
+    """Mark the contacts that have opened so shortly before an impact that their speed is still but rounding."""
+    hold_modes(s)
+    copy(s.a, s.a_free, s.n_q)
+    constrain(s.rows, s.a, s.bias)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        rises = s.mode[c] == OPEN and s.touches[c] == 1 and abs(s.velocity[i]) <= s.terms[c]
+        s.parting[c] = 1 if rises and product(s.R, s.a, i, s.n_q) + s.bias[i] > 0.0 else 0
+
+
+def let_go(s: Rubbing, t: float) -> bool:
+    """Open the contacts that the forces open, where one has landed at this instant; False where not finite."""
+    landed = False
+    for c in range(s.n_c):
+        new = s.mode[c] != OPEN and s.was_mode[c] == OPEN
+        landed = landed or (new and s.impulse[c] > s.instant[c])
+    if not landed:
+        return True
+    if not measure(s, t, s.y):
+        return False
+    if decide(s) == DONE:
+        for c in range(s.n_c):
+            if s.mode[c] != OPEN and s.new_mode[c] == OPEN:
+                s.mode[c], s.parting[c] = OPEN, 1
+    return True
+
+
+def rejoin(s: Rubbing) -> None:
+    """After the last impact of an instant the forces decide anew about the contacts that parted and still touch."""
+    for c in range(s.n_c):
+        if s.parting[c] == 1 and s.mode[c] == OPEN and abs(s.velocity[s.n_j + c]) <= s.terms[c]:
+            s.mode[c] = SLIDES
+        s.parting[c] = 0
+
+
+def approaches(s: Rubbing) -> bool:
+    """Whether a contact on its surface approaches it; one there without speed to rounding is closed."""
+    hit = False
+    for c in range(s.n_c):
+        u = s.velocity[s.n_j + c]
+        if s.mode[c] == OPEN and s.touches[c] == 1:
+            hit = hit or u < -s.terms[c]
+            if abs(u) <= s.terms[c] and s.parting[c] == 0:
+                s.mode[c] = SLIDES
+    return hit

@@ -1,0 +1,97 @@
+"""The motion over a step that is final, as kernels: the states asked for within it, its impulses, the next base."""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.kernels.dop853 import ALL, STAGES
+
+if not cython.compiled:
+    from math import sqrt
+
+    from lcpstep.events.contacts.equations import add_impulse
+    from lcpstep.events.contacts.held import right_hand_side
+    from lcpstep.events.contacts.keep import keep
+    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.projection import project
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import clear, copy
+    from lcpstep.pointers import abs
+
+
+def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) -> None:
+    """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
+    tally.steps += 1
+    pressed = 0.0
+    clear(s.counted, s.n_r)
+    while record.wants(t, t >= s.t_end):
+        wanted = record.awaited() - s.clock.t0
+        press_between(s, pressed, wanted)
+        pressed = wanted
+        keep_wanted(s, record, wanted)
+    if tau > 0.0:
+        press_rest(s, pressed, tau)
+        record.store(s.F, s.length)
+        copy(s.y, s.y_new, 2 * s.n_q)
+    s.clock.start_at(t)
+    if tau > 0.0 and s.rows.n_held > 0:
+        project(s.rows, t, s.q, s.v)
+
+
+def keep_wanted(s: Rubbing, record: Record, tau: float) -> None:
+    """Keep the state asked for next, tau from now: on the rows held, which dense output leaves by its own error."""
+    t = record.awaited()
+    if tau > 0.0:
+        s.at(tau / s.length, s.seen)
+        copy(s.dy, s.y, 2 * s.n_q)
+        copy(s.y, s.seen, 2 * s.n_q)
+        if s.rows.n_held > 0:
+            project(s.rows, t, s.q, s.v)
+        keep(s, record, t, s.y)
+        copy(s.y, s.dy, 2 * s.n_q)
+    else:
+        keep(s, record, t, s.y)
+    record.next_time += 1
+
+
+def press_between(s: Rubbing, a: float, b: float) -> None:
+    """Add the impulses of the forces between a and b after the base: Gauss' quadrature."""
+    if s.rows.n_held == 0 or b <= a:
+        return
+    for k in range(s.n_nodes):
+        tau = a + s.nodes[k] * (b - a)
+        s.at(tau / s.length, s.seen)
+        right_hand_side(s, s.clock.t0 + tau, s.seen, s.dy)
+        share = s.weights[k] * (b - a)
+        for i in range(s.n_r):
+            add_impulse(s, i, share * s.multiplier[i])
+            s.counted[i] = s.counted[i] + share * s.multiplier[i]
+
+
+def press_rest(s: Rubbing, a: float, b: float) -> None:
+    """Add the impulses of the rest of the step, which ends b after the base; up to a they have been counted."""
+    if s.rows.n_held == 0:
+        return
+    if not sum_up(s):
+        press_between(s, a, b)
+        return
+    late = b - s.length
+    for i in range(s.n_r):
+        add_impulse(s, i, s.total[i] + late * s.loads[STAGES * s.n_r + i] - s.counted[i])
+
+
+def sum_up(s: Rubbing) -> bool:
+    """The impulses of the whole step by its own weights; False where an estimated error is above the tolerance."""
+    for i in range(s.n_r):
+        total, e5, e3 = 0.0, 0.0, 0.0
+        for j in range(STAGES + 1):
+            load = s.loads[j * s.n_r + i]
+            total += s.A[STAGES * ALL + j] * load
+            e5 += s.E5[j] * load
+            e3 += s.E3[j] * load
+        s.total[i] = s.length * total
+        tolerance, error = s.atol + s.rtol * abs(s.total[i]), e5 * e5 + 0.01 * e3 * e3
+        if s.length * e5 * e5 > tolerance * sqrt(error):
+            return False
+    return True

@@ -1,0 +1,72 @@
+"""The complementarity problem of closed contacts with friction, on the joints (`rows.on_joints`), as kernels.
+
+The same problem has impulses (`impact`) or forces (`modes`) for its unknowns; see `kernels.coulomb` for its form. A
+contact that slides has its friction in the column of its normal, one that may stick has an unknown of its own.
+"""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.contacts.codes import OPEN
+
+if not cython.compiled:
+    from lcpstep.events.contacts.equations import rubs
+    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.equations import size_of_acceleration
+    from lcpstep.kernels.clock import NOISE
+    from lcpstep.kernels.coulomb import solve_contacts
+
+
+def row_of(s: Rubbing, a: int, n_a: int) -> int:
+    """The row of unknown a of the problem: normals of n_a contacts, then tangents of those that may stick."""
+    if a < n_a:
+        return s.n_j + s.problem.ids[a]
+    return s.n_j + s.n_c + s.problem.ids[s.problem.carrier[a - n_a]]
+
+
+def list_unknowns(s: Rubbing) -> tuple[int, int]:
+    """The closed contacts into `ids`, those that may stick into `carrier`; how many of each."""
+    n_a, n_f = 0, 0
+    for c in range(s.n_c):
+        if s.mode[c] != OPEN:
+            s.problem.ids[n_a] = c
+            if s.free[c] == 1 and rubs(s, c):
+                s.problem.carrier[n_f] = n_a
+                n_f += 1
+            n_a += 1
+    return n_a, n_f
+
+
+def fill(s: Rubbing, n_a: int, n_f: int) -> None:
+    """The matrix of the problem, sliding friction in the columns of the normals."""
+    m, r = n_a + n_f, s.n_r
+    for a in range(m):
+        i = row_of(s, a, n_a)
+        for b in range(m):
+            k = row_of(s, b, n_a)
+            share = 0.0
+            c = s.problem.ids[b] if b < n_a else -1
+            if c >= 0 and s.free[c] == 0 and rubs(s, c):
+                share = s.direction[c] * s.mu[c] * s.S[i * r + k + s.n_c]
+            s.problem.mobility[a * m + b] = s.S[i * r + k] - share
+
+
+def solve_forces(s: Rubbing, n_a: int, n_f: int) -> bool:
+    """Forces for the accelerations in `rate`; where there are none, for those that rounding does not tell from them.
+
+    What is held from both sides has two accelerations that are one but for its sign, each with a rounding of its own.
+    """
+    if solve_contacts(s.problem, n_a, n_f):
+        return True
+    allow(s, n_a, 1.0)
+    found = solve_contacts(s.problem, n_a, n_f)
+    allow(s, n_a, -1.0)
+    return found
+
+
+def allow(s: Rubbing, n_a: int, sign: float) -> None:
+    """Raise, or lower, the accelerations of the normals by their rounding."""
+    for a in range(n_a):
+        size = size_of_acceleration(s.rows, row_of(s, a, n_a), s.a)
+        s.problem.rate[a] = s.problem.rate[a] + sign * NOISE * size

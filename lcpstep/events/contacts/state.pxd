@@ -1,0 +1,44 @@
+from lcpstep.events.hybrid.roots cimport Scan
+from lcpstep.events.hybrid.state cimport Motion
+from lcpstep.events.rows.state cimport Rows
+from lcpstep.kernels.bracket cimport Bracket
+from lcpstep.kernels.clock cimport Clock
+from lcpstep.kernels.coefficients cimport Coefficients
+from lcpstep.kernels.coulomb cimport ContactProblem
+from lcpstep.kernels.model cimport Model
+from lcpstep.kernels.record cimport Record
+from lcpstep.kernels.rungekutta cimport RungeKutta
+from lcpstep.kernels.tally cimport Tally
+from lcpstep.pointers cimport Doubles, Indices
+
+cdef Py_ssize_t ALL, GUARDS, BEGIN, ENTERED, NOT_FINITE
+
+
+cdef class Rubbing(RungeKutta):
+    cdef object turn, rule, table, per_contact, given, marks, looks, arms
+    cdef readonly Rows rows
+    cdef readonly Clock clock
+    cdef readonly Model model
+    cdef readonly ContactProblem problem
+    cdef readonly Coefficients coefficients
+    cdef Scan scan
+    cdef readonly Py_ssize_t n_q, n_c, n_j, n_t, n_r, n_nodes
+    cdef public Py_ssize_t next, culprit, jams, rounds
+    cdef readonly bint in_turn, yields
+    cdef readonly double t_end, scan_length
+    cdef Py_ssize_t guard, paced, loose, stalled
+    cdef double found, slope, kept_to, shown, delay
+    cdef bint constant, plain, mapped, risen
+    cdef Doubles nodes, weights, q, v, a_free, a, force, dy, seen, dv, R, MR, W, S
+    cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, account, instant, paces
+    cdef Doubles turn_velocity, turn_start, turn_impulse, shifted_rate, counted, total, loads, doubt, effect
+    cdef Doubles effects, mu, mu_s, slip, tangential, direction, was_direction, new_direction, terms, before
+    cdef Doubles owed, lands, height, rise, bend, speed, struck, since, chatter_end, left, curve, stray
+    cdef Bracket bracket
+    cdef readonly Motion watch
+    cdef bint hopping, watched, flying
+    cdef Py_ssize_t guards
+    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, thrown, tried, hops, carried
+    cdef Doubles value, band, samples
+    cdef Indices armed
+    cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil

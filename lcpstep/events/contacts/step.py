@@ -1,0 +1,239 @@
+"""A Runge-Kutta step of a system with contacts, up to the first event within it, as kernels."""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.contacts.codes import EDGE, JUMP, LEANS, OBEY, OPEN, SETTLE, STICKS, SWITCH
+from lcpstep.events.ends import NO_FORCES, NO_SURFACE
+from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
+
+if not cython.compiled:
+    from lcpstep.events.contacts.equations import measure, rubs, sliding
+    from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
+    from lcpstep.events.contacts.held import hold_modes
+    from lcpstep.events.contacts.hops import carry, find_landings, interrupt, shortest_hop
+    from lcpstep.events.contacts.impact import forget_terms, still
+    from lcpstep.events.contacts.keep import keep
+    from lcpstep.events.contacts.loose import first_stray
+    from lcpstep.events.contacts.modes import decide, gives, undecided
+    from lcpstep.events.contacts.moments import jumps, locate, of_sliding, turns_at_once
+    from lcpstep.events.contacts.parting import part_before
+    from lcpstep.events.contacts.passing import take_over
+    from lcpstep.events.contacts.state import GUARDS, Rubbing
+    from lcpstep.events.contacts.surfaces import find_touching, lift
+    from lcpstep.events.contacts.switching import reach_guard, watch
+    from lcpstep.events.rows.jumps import breaks
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import abs, min
+
+# Of a step: where the forces after a release, or a slip, are looked at, how much further while they are zero, and how
+# far at most
+LOOK_AHEAD, FURTHER, FARTHEST = 1e-6, 10.0, 1e-2
+LONGEST = 4.0  # times as long as the shortest hop, were its acceleration constant
+
+
+def step(s: Rubbing, record: Record, tally: Tally) -> int:
+    """One step, which ends at the first event within it; what comes next into `next`. A status.
+
+    Where no forces hold the rows any more, sliding friction takes them away, or surfaces have become parallel.
+    """
+    s.culprit = -1
+    code = stride(s, record, tally)
+    if code != NOT_FINITE or s.culprit < 0:
+        return code
+    return PAINLEVE_INCONSISTENT if rubs(s, s.culprit) else NO_FORCES
+
+
+def stride(s: Rubbing, record: Record, tally: Tally) -> int:
+    """The same; NOT_FINITE where no forces hold the row of `culprit`."""
+    t0, border = s.clock.t0, min(s.t_end, s.clock.high)
+    if s.rows.n_held != s.paced:
+        change_pace(s)
+    code = s.take_step(t0, min(min(border - t0, s.scan_length), LONGEST * shortest_hop(s)), s.scan_length)
+    if code != DONE:
+        return code
+    h = s.length
+    mark_resting(s)
+    if breaks(s.rows, s, h, False):
+        return DONE
+    find_landings(s, h)
+    g = first_event(s, h)
+    if s.shown <= 1.0 and g != UNKNOWN:
+        g = first_stray(s, h, g)
+    if g == UNKNOWN:
+        return NOT_FINITE
+    if s.watched:
+        code = watch(s, h, 1.0 if g < 0 else s.found)
+        if code != DONE or s.watch.culprit >= 0:
+            return complete_to_guard(s, record, tally, h) if code == DONE else code
+    if g < 0:
+        interrupt(s, -1, h)
+        take_over(s, record, tally, border if h >= border - t0 else s.clock.after(h), h)
+        if s.hopping:
+            if not look(s, s.clock.t0, s.y):
+                return NOT_FINITE
+            carry(s)
+        if record.is_due(tally.steps):
+            keep(s, record, s.clock.t0, s.y)
+        return DONE
+    if of_force(s, g):
+        code = look_ahead(s, h)
+        if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
+            return code
+    tau = land(s, g, border - t0) if is_landing(s, g) else locate(s, g, h, border - t0)
+    if tau == UNKNOWN:
+        return NOT_FINITE
+    if of_sliding(s, g) and turns_at_once(s, g, tau, h):
+        return DONE
+    interrupt(s, g // GUARDS, tau)
+    take_over(s, record, tally, min(s.clock.after(tau), border), tau)
+    if code != DONE or (tau > 0.0 and of_sliding(s, g) and jumps(s, g, tau)):
+        return code  # a jump whose polynomial has been there, not the velocity
+    return arrive(s, g)
+
+
+def complete_to_guard(s: Rubbing, record: Record, tally: Tally, h: float) -> int:
+    """The step up to the guard of modes that acts; a status."""
+    tau = reach_guard(s, h)
+    interrupt(s, -1, tau)
+    take_over(s, record, tally, min(s.clock.after(tau), min(s.t_end, s.clock.high)), tau)
+    s.next = SWITCH
+    return DONE
+
+
+def is_landing(s: Rubbing, g: int) -> bool:
+    """Whether guard g is the end of a hop that has been followed by its acceleration."""
+    return g % GUARDS == 0 and s.lands[g // GUARDS] >= 0.0
+
+
+def land(s: Rubbing, g: int, longest: float) -> float:
+    """Time from now at which that hop ends; a step of this length is left, complete."""
+    tau = min(s.lands[g // GUARDS], longest)
+    return tau if s.step(s.clock.t0, tau) and s.complete(s.clock.t0, tau) else UNKNOWN
+
+
+def mark_resting(s: Rubbing) -> None:
+    """Which gaps, and which sliding velocities, the modes at hand keep at zero."""
+    for c in range(s.n_c):
+        i, mode = s.n_j + c, s.mode[c]
+        s.rows.rests[i] = 1 if mode != OPEN else 0
+        if s.n_t > 0:
+            s.rows.rests[i + s.n_c] = 1 if mode in (STICKS, LEANS) else 0
+
+
+def change_pace(s: Rubbing) -> None:
+    """Go on with the step that was next when as many rows were held: what sticks allows others than what slides."""
+    s.paces[s.paced] = s.next_step
+    if s.paces[s.rows.n_held] > 0.0:
+        s.next_step = s.paces[s.rows.n_held]
+    s.paced = s.rows.n_held
+
+
+def of_force(s: Rubbing, g: int) -> bool:
+    """Whether guard g tells of a force, that pulls or leaves its cone; the others tell of a gap or of sliding."""
+    mode = s.mode[g // GUARDS]
+    return mode != OPEN and (g % GUARDS == 0 or mode == STICKS)
+
+
+def arrive(s: Rubbing, g: int) -> int:
+    """The motion has come to the event of guard g: what comes next into `next`. A status."""
+    c = g // GUARDS
+    if not measure(s, s.clock.t0, s.y):
+        return NOT_FINITE
+    if of_force(s, g):
+        s.next = OBEY if changes(s) else SETTLE
+    elif s.mode[c] == OPEN:
+        return meet(s, c)
+    else:
+        stop(s, c)
+    return DONE
+
+
+def changes(s: Rubbing) -> bool:
+    """Whether the modes that `look_ahead` has found are others than those at hand; else the state itself decides.
+
+    A force that jumps may do so later than its guard's polynomial has seen it.
+    """
+    some = differ(s)
+    if not some:
+        find_standing(s)
+    return some
+
+
+def differ(s: Rubbing) -> bool:
+    """Whether the modes just decided are others than those at hand."""
+    some = False
+    for c in range(s.n_c):
+        some = some or s.new_mode[c] != s.mode[c] or s.new_direction[c] != s.direction[c]
+    return some
+
+
+def look_ahead(s: Rubbing, h: float) -> int:
+    """The modes just after a force has left its cone, or turned to pulling; a status.
+
+    Rounding of larger forces may hide it for a while: where no mode changes one looks further.
+    """
+    ahead = LOOK_AHEAD + s.delay
+    while True:
+        s.at(s.found + ahead, s.seen)
+        if not measure(s, s.clock.t0 + (s.found + ahead) * h, s.seen):
+            return NOT_FINITE
+        find_standing(s)
+        code = decide(s)
+        if code != DONE or ahead >= FARTHEST or (not undecided(s) and differ(s)):
+            break
+        ahead *= FURTHER
+    hold_modes(s)  # the old ones, for the rest of the step
+    return code
+
+
+def meet(s: Rubbing, c: int) -> int:
+    """Contact c has come to its surface; a status, for that may be there no more."""
+    find_touching(s)
+    if not lift(s, c):
+        s.culprit = c
+        return NO_SURFACE
+    s.touches[c] = 1
+    forget_terms(s)
+    if not s.in_turn:
+        part_before(s)
+    s.next = JUMP
+    return DONE
+
+
+def stop(s: Rubbing, c: int) -> None:
+    """The sliding velocity of contact c is zero."""
+    find_standing(s)
+    s.free[c] = 1
+    stop_with(s, c)
+    s.next = SETTLE
+
+
+def stop_with(s: Rubbing, c: int) -> None:
+    """Contacts that stop with contact c are those whose sliding velocity goes with what the step has left of its own.
+
+    Feet of one body stop together, and the ends of a rod: a step is only as exact as its order, and what of one
+    velocity it has left, it has of the others.
+    """
+    i = s.n_j + s.n_c + c
+    own = gives(s, i)
+    if not own > EDGE * s.W[i * s.n_r + i]:
+        return
+    for d in range(s.n_c):
+        k = s.n_j + s.n_c + d
+        with_it = s.velocity[i] * product(s.R, s.dv, k, s.n_q) / own
+        if abs(s.velocity[k] - with_it) <= still(s, k) + EDGE * abs(with_it):
+            s.free[d] = 1
+
+
+def find_standing(s: Rubbing) -> None:
+    """Which contacts do not slide: those that stick, and those of whose sliding velocity that cannot be told.
+
+    Feet of one body that share a direction are among these: one of them is held, the others have a share of the load.
+    """
+    for c in range(s.n_c):
+        rests = s.n_t == 0 or s.mode[c] == STICKS or s.mode[c] == LEANS
+        s.free[c] = 1 if rests or abs(sliding(s, c)) <= still(s, s.n_j + s.n_c + c) else 0

@@ -1,0 +1,144 @@
+"""Positions on the surfaces that contacts have come to, and joints that come apart, as kernels."""
+
+from __future__ import annotations
+
+import cython
+
+from lcpstep.events.contacts.codes import OPEN
+
+if not cython.compiled:
+    from lcpstep.events.contacts.equations import (
+        gap_tolerance,
+        measure,
+        rounding_of_gap,
+        share_left,
+        speed_tolerance,
+    )
+    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.held import constrain, contradiction, parted
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.dynamics import gap_rates, gaps
+    from lcpstep.kernels.vectors import clear, copy, largest, product
+    from lcpstep.pointers import Doubles, abs, after
+
+FREE = 1e-9  # relative: what a row can move of itself while others are held, or it depends on them
+TOGETHER = 1e-3  # of the tolerance of a gap
+GONE = 1e-90  # of the tolerance: what is left of a motion that has died away
+SURE = 0.5  # of a gap: by how much its slope may change over Newton's step to zero if there is one
+LATE = 8.0  # roundings of a time: what two events must be apart to be told from one
+
+
+def contradict(s: Rubbing) -> bool:
+    """Whether joints left out ask for another acceleration than the joints held leave, in `a`; `culprit`."""
+    i = contradiction(s.rows, s.a)
+    s.culprit = i if i >= 0 else s.culprit
+    return i >= 0
+
+
+def come_apart(s: Rubbing) -> bool:
+    """Whether a joint left out is no longer closed at the base state; `culprit`."""
+    gaps(s.rows.joints, s.clock.t0, s.q, s.v, s.gap)
+    i = parted(s.rows, s.gap, s.q)
+    s.culprit = i if i >= 0 else s.culprit
+    return i >= 0
+
+
+def lift(s: Rubbing, c: int) -> bool:
+    """Put q onto the surface of contact c, which it misses by no more than the tolerance; False where there is none.
+
+    Along its own way where a time cannot tell the difference, so that gaps that close at one instant, as those of two
+    corners of a block, go on closing together; else with the rows held where they are: what brings one of those back
+    takes the contact off its surface again, by more than the last hops of a chattering.
+    """
+    i, g, u, n = s.n_j + c, s.gap[s.n_j + c], s.velocity[s.n_j + c], s.n_q
+    way, speed, straight = s.v, u, True
+    if s.rate[i] != 0.0 or u >= 0.0 or abs(g) > -s.clock.untold(s.length) * u:
+        way, speed, straight = after(s.MR, i * n), s.W[i * s.n_r + i], s.model.flat
+        if s.rows.n_held > 0:
+            copy(s.dv, way, n)
+            clear(s.shifted_rate, s.n_r)
+            constrain(s.rows, s.dv, s.shifted_rate)
+            u = product(s.R, s.dv, i, n)
+            if abs(u) > FREE * speed:
+                way, speed = s.dv, u
+    s.gap[i] = 0.0
+    if speed == 0.0:  # as in the middle of a bowl
+        return True
+    if not (straight or s.rate[i] >= 0.0 or is_known(s, c, way, speed)):
+        return False
+    for j in range(n):
+        s.q[j] -= way[j] * g / speed
+    return straight or has_room(s, c, way, speed, g)
+
+
+def is_known(s: Rubbing, c: int, way: Doubles, speed: float) -> bool:
+    """Whether a time that cannot be told leaves the normal of contact c what it is, as it does not in mid-bowl."""
+    moment = s.clock.untold(s.length)
+    for j in range(s.n_q):
+        s.seen[j] = s.q[j] + moment * s.v[j]
+    gap_rates(s.model, s.clock.t0, s.seen, s.v, s.rows.G, s.rows.near)
+    return abs(product(s.rows.G, way, c, s.n_q) - speed) <= SURE * abs(speed)
+
+
+def has_room(s: Rubbing, c: int, way: Doubles, speed: float, g: float) -> bool:
+    """Whether contact c, whose gap g `lift` has taken along `way`, leaves room; where it was led astray q goes back.
+
+    By h = |(G' - G) dq| / |G dq|: Newton's step leads towards a zero where h <= 1/2. Beyond that a parabola that
+    bends downwards, as in the middle of a bowl, has none if g < 0, and if g > 0 rises by no more than g. Source of h:
+    L. Kantorovich, Functional analysis and applied mathematics, Uspekhi Matematicheskikh Nauk 3 (1948).
+    """
+    gap_rates(s.model, s.clock.t0, s.q, s.v, s.rows.G, s.rows.near)
+    bend = product(s.rows.G, way, c, s.n_q) - speed
+    if abs(bend) <= SURE * abs(speed):
+        return True
+    for j in range(s.n_q):
+        s.q[j] += way[j] * g / speed
+    downwards = bend * speed * g > 0.0
+    return not (downwards and (g < 0.0 or s.rate[s.n_j + c] < 0.0))
+
+
+def come_to_rest(s: Rubbing) -> bool:
+    """Put at rest, at zero, a motion of which nothing is left; False where the rest is not finite there.
+
+    Beyond, squares of errors tell nothing, and soon numbers have no digits more, by which impacts have an answer.
+    """
+    left = largest(s.y, 0.0, 2 * s.n_q)
+    if left == 0.0 or left > GONE * s.atol:
+        return True
+    clear(s.y, 2 * s.n_q)
+    if not measure(s, s.clock.t0, s.y):
+        return False
+    find_touching(s)
+    return True
+
+
+def touching(s: Rubbing, c: int) -> float:
+    """The gap below which contact c is closed when another one is: rounding, and a little of the tolerance.
+
+    Late times tell no better which of two gaps that close together, as at two corners of a block, was first.
+    """
+    return nearly(s, c, share_left(s))
+
+
+def nearly(s: Rubbing, c: int, share: float) -> float:
+    """The same by what is left of the motion, as a share of the tolerance."""
+    late = LATE * RESOLUTION * abs(s.clock.t0) * abs(s.velocity[s.n_j + c])
+    return rounding_of_gap(s, c) + TOGETHER * share * gap_tolerance(s, c) + late
+
+
+def find_closed(s: Rubbing) -> None:
+    """Mark the contacts that begin closed: gaps zero to rounding, or to the tolerance where they do not move.
+
+    A contact that moves is in a hop, and to begin that at the surface would leave it only the height that it has
+    beyond.
+    """
+    for c in range(s.n_c):
+        g, still = s.gap[s.n_j + c], abs(s.velocity[s.n_j + c]) <= speed_tolerance(s, s.n_j + c)
+        s.touches[c] = 1 if g <= rounding_of_gap(s, c) or (still and g <= gap_tolerance(s, c)) else 0
+
+
+def find_touching(s: Rubbing) -> None:
+    """Mark the open contacts whose gap is closed to rounding or to the tolerance."""
+    share = share_left(s)
+    for c in range(s.n_c):
+        s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= nearly(s, c, share) else 0

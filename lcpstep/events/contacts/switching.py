@@ -1,0 +1,135 @@
+"""Systems with modes that have contacts, as kernels: x' = f_mode(t, x), x = (q, v), with impacts and contact forces.
+
+    M v' = M a_mode(t, q, v) + G^T lambda,      0 <= g  complementary to  lambda >= 0,      u+ = -r u-
+
+Contacts are those of the loop for any system; here its acceleration changes at guards. They are found and located by
+what does so for systems without contacts (`events.hybrid`), along the motion that the contacts leave: `Watched` is
+its `Motion`, whose field has the contact forces in it. The other way round, modes of contacts made from guards and
+resets, would have said impacts of several contacts, chattering and release a second time, in 2^n modes.
+
+A guard acts before an impact at the same time. Between an impact and what moves on, guards are looked at: one that
+the jump has carried through zero acts. After a switch all contacts are decided anew, for forces jump and states may.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+
+from lcpstep.events.contacts.codes import ENTERED, JUMPED, LOOKED, OPEN, SWITCH
+from lcpstep.events.ends import INSIDE
+from lcpstep.kernels.status import (
+    BUFFER_FULL,
+    DONE,
+    ENDLESS_SWITCHING,
+    NOT_FINITE,
+    NOT_TRANSVERSAL,
+    TOO_MANY_EVENTS,
+)
+
+if not cython.compiled:
+    from lcpstep.events.contacts.equations import gap_tolerance, measure, rounding_of_gap
+    from lcpstep.events.contacts.impact import forget_terms
+    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.contacts.surfaces import find_closed
+    from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
+    from lcpstep.events.hybrid.loop import MAX_STALLED, enter, leave
+    from lcpstep.events.hybrid.state import Motion
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.pointers import Doubles, max, min
+
+
+class Watched(Motion):
+    """The motion `rubbing` of a system with modes, as its guards see it: they share one step."""
+
+    rubbing: Any
+
+    def share(self, s: Any) -> None:
+        """Work on the numbers of that motion."""
+        self.rubbing, self.state = s, s.state
+        self.take_numbers(s)
+
+    def take_numbers(self, s: Rubbing) -> None:
+        """States and stages are those of s."""
+        self.y, self.y_new, self.y_stage, self.first, self.K, self.F = (
+            s.y, s.y_new, s.y_stage, s.first, s.K, s.F,
+        )  # fmt: skip
+
+    def rates(self, t: float, y: Doubles, dy: Doubles) -> bool:
+        """Dy = (v, v') in the mode at hand, with the rows held."""
+        self.rubbing.stage = self.stage
+        return self.rubbing.rates(t, y, dy)
+
+
+def watch(s: Rubbing, h: float, end: float) -> int:
+    """The first guard of modes that acts within the share `end` of the step of size h, into `watch`; a status.
+
+    When, as a share of h, into `found`; how fast its value rises, into `slope`.
+    """
+    s.watch.culprit = -1
+    if not end > 0.0:
+        return DONE
+    s.watch.now, s.watch.t_end = s.clock.t0, min(s.t_end, s.clock.high)
+    k, at, slope, curvature = find(s.watch, h, end)
+    if k == UNKNOWN:
+        return NOT_FINITE
+    if k < 0:
+        return DONE
+    s.watch.culprit, s.watch.armed[k] = k, s.watch.was_armed
+    if s.watch.was_armed and slope * slope <= -4.0 * s.watch.band[k] * curvature:
+        s.watch.now = s.clock.t0 + at * h
+        return NOT_TRANSVERSAL
+    s.found, s.slope = at, slope
+    return DONE
+
+
+def reach_guard(s: Rubbing, h: float) -> float:
+    """The time from the base at which the guard found acts; the step is repeated up to it."""
+    tau = locate(s.watch, s.watch.culprit, h, s.found, s.slope)
+    if tau > 0.0:
+        s.complete(s.clock.t0, tau)
+    return tau
+
+
+def look_at_guards(s: Rubbing) -> None:
+    """After the start of a mode, or a jump of velocities: a guard that is passed acts."""
+    s.watch.now = s.clock.t0
+    s.watch.culprit = enter(s.watch, -1, s.guards == JUMPED)
+    s.guards = LOOKED
+    if s.watch.culprit >= 0:
+        s.next = SWITCH
+
+
+def switch(s: Rubbing, tally: Tally) -> int:
+    """The guard acts at the base: log, reset, new mode; contacts closed that stay so are found by `jump`."""
+    k = s.watch.culprit
+    if s.watch.switches >= s.watch.log_capacity:
+        s.next = SWITCH
+        return BUFFER_FULL
+    s.watch.now, s.guards = s.clock.t0, ENTERED
+    leave(s.watch, k)
+    s.model.mode = s.watch.mode
+    tally.events += 1
+    if s.watch.stalled > MAX_STALLED:
+        return ENDLESS_SWITCHING
+    if tally.events > tally.max_events:
+        return TOO_MANY_EVENTS
+    return place(s, s.watch.m.has_reset[k] != 0)
+
+
+def place(s: Rubbing, moved: bool) -> int:
+    """Gaps and velocities of the contacts; those of a state that a reset has moved begin anew."""
+    if not measure(s, s.clock.t0, s.y):
+        return NOT_FINITE
+    for c in range(s.n_c):
+        s.touches[c] = 1 if s.mode[c] != OPEN else 0
+        if moved:
+            s.mode[c], s.carried[c] = OPEN, 0
+            if s.gap[s.n_j + c] < -max(rounding_of_gap(s, c), gap_tolerance(s, c)):
+                s.culprit = c
+                return INSIDE
+    if moved:
+        find_closed(s)
+    forget_terms(s)
+    return DONE

@@ -1,9 +1,0 @@
-from lcpstep.events.friction.state cimport Rubbing
-from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.tally cimport Tally
-
-
-cdef class Smooth(Rubbing):
-    cdef bint rates(self, double t, double* y, double* dy) noexcept nogil
-    cdef double rate_terms(self) noexcept nogil
-    cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil

@@ -1,0 +1,89 @@
+"""Motion under constant acceleration with gaps that are linear in q, as kernels: exact, from contact to contact.
+
+A gap is g + u tau + alpha tau^2 / 2, and its first zero is known. Gaps and speeds are carried along from event to
+event, not computed from the state, so that small ones keep their digits.
+"""
+
+from __future__ import annotations
+
+import cython
+
+if not cython.compiled:
+    from lcpstep.events.parabolas.keep import keep, keep_wanted
+    from lcpstep.events.parabolas.motion import press, rebase, state_at
+    from lcpstep.events.parabolas.state import JUMP, Mechanism
+    from lcpstep.events.rows.held import push_by_change
+    from lcpstep.kernels.quadratic import first_zero
+    from lcpstep.kernels.record import Record
+    from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import largest, product
+    from lcpstep.pointers import abs, max, min
+
+LARGE = 1e-6  # of the largest coordinate: what difference of coordinates has digits enough
+
+
+def fly(s: Mechanism, record: Record, tally: Tally) -> None:
+    """Constant acceleration up to the next contact, or to the end of the span."""
+    n_c, border = s.n_c, s.t_end - s.t0
+    tau, meets = border, -1
+    for c in range(n_c):
+        if s.contact.closed[c] == 0:
+            root = first_zero(s.contact.gap[c], s.contact.speed[c], 0.5 * s.contact.curve[c])
+            if root < tau:
+                tau, meets = root, c
+    t = s.t_end if meets < 0 else min(s.after(tau), s.t_end)
+    tally.steps += 1
+    s.length = tau
+    pressed = 0.0
+    while record.wants(t, meets < 0):
+        wanted = record.awaited() - s.t0
+        press(s, wanted - pressed)
+        pressed = wanted
+        keep_wanted(s, record)
+    press(s, tau - pressed)
+    state_at(s, tau)
+    record.store(s.a, tau)
+    for c in range(n_c):
+        if s.contact.closed[c] == 0:
+            u, alpha = s.contact.speed[c], s.contact.curve[c]
+            s.contact.gap[c] = max(0.0, s.contact.gap[c] + tau * (u + 0.5 * alpha * tau))
+            s.contact.speed[c] = u + alpha * tau
+    rebase(s, t)
+    if meets < 0:
+        if record.is_due(tally.steps):
+            keep(s, record, t)
+        return
+    s.contact.gap[meets] = 0.0
+    if tau == 0.0:
+        tally.stalled += 1
+    s.next = JUMP
+
+
+def synchronise(s: Mechanism) -> None:
+    """Gaps and speeds of contacts just disturbed anew from q, v, where they are large enough to lose no digits so.
+
+    Carried along over many impacts they would collect rounding, and impulses with them.
+    """
+    n_j, q, v = s.n_j, s.q, s.v
+    length, speed = largest(q, 0.0, s.n_q), largest(v, 0.0, s.n_q)
+    for c in range(s.n_c):
+        if s.contact.synchronous[c] == 0.0 and s.contact.closed[c] == 0:
+            s.contact.synchronous[c] = 1.0
+            g, u = product(s.R, q, n_j + c, s.n_q) + s.model.offset[c], product(s.R, v, n_j + c, s.n_q)
+            if g > LARGE * length:
+                s.contact.gap[c] = g
+            if abs(u) > LARGE * speed:
+                s.contact.speed[c] = u
+
+
+def polish(s: Mechanism) -> None:
+    """Take from q, v what rounding has left of the gaps and speeds that are zero."""
+    k, n_j = s.n_held, s.n_j
+    for turn in range(4):
+        x = s.q if turn < 2 else s.v
+        for m in range(k):
+            i = s.row[m]
+            s.change[m] = -product(s.R, x, i, s.n_q)
+            if turn < 2:
+                s.change[m] -= s.joints.offset[i] if i < n_j else s.model.offset[i - n_j]
+        push_by_change(s, x)
