@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol, cast, overload
+from weakref import WeakSet
 
 from lagrangian import Contacts, HybridScene, Scene
 from lagrangian.relations import check_derivatives
@@ -24,6 +25,8 @@ from lcpstep.turned import turned
 if TYPE_CHECKING:
     from lcpstep.events.hybrid.trajectory import HybridTrajectory
     from lcpstep.trajectory import Trajectory
+
+COMPARED: WeakSet[Scene] = WeakSet()  # scenes whose derivatives have been compared near states of a run
 
 
 class Method(Protocol):
@@ -190,7 +193,12 @@ def _with_error(run: Trajectory, wide: Trajectory, kept: Kept, seconds: float) -
 
 
 def _compare_derivatives(run: Trajectory) -> None:
-    """SimulationError where a derivative of the scene is wrong at states that the start has not shown."""
+    """SimulationError where a derivative of the scene is wrong at states that the start has not shown.
+
+    Once for a scene: its functions and parameters stay what they are.
+    """
+    if run.scene in COMPARED:
+        return
 
     def states() -> Iterator[tuple[float, Any, Any]]:
         last = len(run.t) - 1
@@ -201,6 +209,7 @@ def _compare_derivatives(run: Trajectory) -> None:
         check_derivatives(run.scene, states(), run=True)
     except ValueError as error:
         raise SimulationError(str(error), run) from error
+    COMPARED.add(run.scene)
 
 
 def _no_room(run: Trajectory) -> str:
