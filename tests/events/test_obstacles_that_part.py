@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Coulomb, LinearContacts, Scene, System
-from lcpstep import EventDriven, Kind, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Status, simulate
 
 
 def pressed(t, q, v, p, out):
@@ -65,17 +65,25 @@ def weighed(t, q, v, p, out):
     out[1] = -10.0
 
 
+SLOPES, MU = np.array([1.5, 3.0, 0.5]), np.array([0.1, 0.3, 0.05])
+
+
+def rubbed(rates):
+    """A body of 4 kg that slides on obstacles of these slopes, which part as t^4."""
+    n = len(rates)
+    normal, tangent = SLOPES[:n, None] * [0.0, 1.0], np.ones((n, 1)) * [1.0, 0.0]
+    return Scene(
+        System(2, 4.0 * np.eye(2), weighed), q0=[0.0, 0.0], v0=[0.6, 0.0], t_span=(0.0, 0.4), p=[*rates, 4.0],
+        contacts=LinearContacts(normal, motion=powers, friction=Coulomb(mu=MU[:n], tangent=tangent)),
+    )  # fmt: skip
+
+
 @pytest.mark.parametrize("rates", [(0.0, -1.0), (0.0, 1.0), (1.0, 0.0), (0.2, -0.3, -0.1)])
 def test_the_highest_obstacle_alone_rubs(rates):
     """X'' = -mu lambda / m with lambda = (m y'' + 10) / slope, of the obstacle that the body is on."""
-    slopes, mu = np.array([1.5, 3.0, 0.5])[: len(rates)], np.array([0.1, 0.3, 0.05])[: len(rates)]
+    slopes, mu = SLOPES[: len(rates)], MU[: len(rates)]
     highest = int(np.argmax(np.array(rates) / slopes))
-    normal, tangent = slopes[:, None] * [0.0, 1.0], np.ones((len(rates), 1)) * [1.0, 0.0]
-    scene = Scene(
-        System(2, 4.0 * np.eye(2), weighed), q0=[0.0, 0.0], v0=[0.6, 0.0], t_span=(0.0, 0.4), p=[*rates, 4.0],
-        contacts=LinearContacts(normal, motion=powers, friction=Coulomb(mu=mu, tangent=tangent)),
-    )  # fmt: skip
-    m = simulate(scene, EventDriven())
+    m = simulate(rubbed(rates), EventDriven())
     y = rates[highest] / slopes[highest] * m.t**4
     x = 0.6 * m.t - mu[highest] / slopes[highest] * (2.5 * m.t**2 / 2.0 + y)
     np.testing.assert_allclose(m.q, np.stack([x, y], axis=1), rtol=0, atol=1e-11)
@@ -111,7 +119,7 @@ def along_x(t, q, v, p, out):
         out[i, 0], out[i, 1], out[i, 2] = 1.0, 0.0, 0.0
 
 
-def on_belts(rates, mu, push):
+def on_belts(rates, mu, push, method):
     """A block whose feet bear 6.25 N and 3.75 N, each on a belt of its own that starts as t^2."""
     feet = np.array([-0.3, 0.5])
     normal = np.stack([0.0 * feet, 1.0 + 0.0 * feet, feet], axis=1)
@@ -122,14 +130,29 @@ def on_belts(rates, mu, push):
             System(3, np.diag([1.0, 1.0, 0.1]), driven), np.zeros(3), np.zeros(3), (0.0, 0.8), p=[*rates, push],
             contacts=LinearContacts(normal, friction=rubbing),
         ),
-        EventDriven(),
+        method,
     )  # fmt: skip
 
 
-def test_belts_that_part_take_a_block_along_by_the_foot_that_can():
+@pytest.mark.parametrize(
+    ("method", "exact"),
+    [(EventDriven(), 1e-9), (Located(1e-2, order=4), 1e-9), (Located(1e-3), 1e-6)],
+    ids=["event-driven", "order four", "order two"],
+)
+def test_belts_that_part_take_a_block_along_by_the_foot_that_can(method, exact):
     """The foot with the larger load keeps to its belt up to its friction; the other one has slid since the start."""
-    along = on_belts((1.0, 0.0), 0.3, 0.0)  # 2 t + 1.125 = 1.875 at t = 0.375
+    along = on_belts((1.0, 0.0), 0.3, 0.0, method)  # 2 t + 1.125 = 1.875 at t = 0.375
     at, v = 0.375**3 / 3.0, 0.375**2
-    assert along.q[-1, 0] == pytest.approx(at + v * 0.425 + 0.75 * 0.425**2 / 2.0, abs=1e-9)
-    pushed = on_belts((0.0, 1.0), 0.6, 4.0)  # the other foot holds, as the first cannot: 4 + 2.25 > 3.75
-    assert pushed.q[-1, 0] == pytest.approx(0.8**3 / 3.0, abs=1e-9)
+    assert along.q[-1, 0] == pytest.approx(at + v * 0.425 + 0.75 * 0.425**2 / 2.0, abs=exact)
+    pushed = on_belts(
+        (0.0, 1.0), 0.6, 4.0, method
+    )  # the other foot holds, as the first cannot: 4 + 2.25 > 3.75
+    assert pushed.q[-1, 0] == pytest.approx(0.8**3 / 3.0, abs=exact)
+
+
+def test_located_leaves_the_obstacles_that_lie_deeper():
+    for rates in ((0.0, 1.0), (1.0, 0.0), (0.2, -0.3, -0.1)):
+        scene = rubbed(rates)
+        run, true = simulate(scene, Located(1e-2, order=4)), simulate(scene, EventDriven())
+        np.testing.assert_allclose(run.q[-1], true.q[-1], rtol=0, atol=1e-11)
+        assert not run.doubt

@@ -32,6 +32,7 @@ if not cython.compiled:
         note_base,
     )
     from lcpstep.stepping.rubbing.paced import pace
+    from lcpstep.stepping.rubbing.strays import find_stray
     from lcpstep.stepping.rubbing.strides import Strides
 
 # Of a step: where the forces after a release, or a slip, are looked at, and how much further each time that nothing
@@ -99,6 +100,8 @@ def search(s: Strides, t: float, h: float) -> int:
             s.guard = TORN
             return DONE
         s.tau = locate(s, s.guard, h) if first_event(s, h) >= 0 else NOWHERE
+        if s.loose > 0:
+            find_stray(s, h)
         if s.tau != NOWHERE and turns_at_once(s, s.guard):
             s.clock.break_at(t + s.tau)
             s.guard = TORN
