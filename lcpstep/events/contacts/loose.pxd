@@ -11,7 +11,7 @@ cdef bint is_loose(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void forget_strays(Rubbing s) noexcept nogil
 cdef void notice(Rubbing s, double place, double t) noexcept nogil
 @cython.locals(low=double, high=double)
-cdef Py_ssize_t first_stray(Rubbing s, double h, Py_ssize_t g) noexcept nogil
+cdef void first_stray(Rubbing s, double h) noexcept nogil
 cdef double first_beyond(Rubbing s, double low, double high, double h, double level) noexcept nogil
 cdef Py_ssize_t straying_at(Rubbing s, double place, double h, double level) noexcept nogil
 @cython.locals(mode=Py_ssize_t)

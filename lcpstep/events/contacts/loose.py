@@ -68,21 +68,20 @@ def notice(s: Rubbing, place: float, t: float) -> None:
         s.shown = place
 
 
-def first_stray(s: Rubbing, h: float, g: int) -> int:
-    """The first row that leaves its rest within the step of size h, as a guard of its contact, or the guard g found.
+def first_stray(s: Rubbing, h: float) -> None:
+    """The first row that leaves its rest within the step of size h, before the guard found, in its place.
 
-    When goes into `found`, as of other guards, and how much later it shows into `delay`.
+    As a guard of its contact; when goes into `found`, as of other guards, and how much later it shows into `delay`.
     """
     low, high = s.kept_to, min(s.shown, s.found)
     c = straying_at(s, high, h, DRIFT) if low < high else -1
     if c < 0:
-        return g
+        return
     high = first_beyond(s, low, high, h, DRIFT)
     place = first_beyond(s, 0.0, high, h, NOISE)
     s.found = max(0.0, place - EARLIER * (high - place))
     s.guard, s.risen, s.delay = GUARDS * c, False, high - s.found
     s.stray[c] = MORE * max(1.0, s.stray[c])
-    return s.guard
 
 
 def first_beyond(s: Rubbing, low: float, high: float, h: float, level: float) -> float:

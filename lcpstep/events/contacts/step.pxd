@@ -8,6 +8,9 @@ cdef double EDGE, LOOK_AHEAD, FURTHER, FARTHEST, LONGEST
 
 cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t stride(Rubbing s, Record record, Tally tally) noexcept nogil
+cdef Py_ssize_t find(Rubbing s, double h) noexcept nogil
+cdef Py_ssize_t complete(Rubbing s, Record record, Tally tally, double h) noexcept nogil
+cdef Py_ssize_t complete_to_event(Rubbing s, Record record, Tally tally, double h) noexcept nogil
 cdef Py_ssize_t complete_to_guard(Rubbing s, Record record, Tally tally, double h) noexcept nogil
 cdef bint is_landing(Rubbing s, Py_ssize_t g) noexcept nogil
 cdef double land(Rubbing s, Py_ssize_t g, double longest) noexcept nogil

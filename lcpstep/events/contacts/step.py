@@ -55,35 +55,55 @@ def stride(s: Rubbing, record: Record, tally: Tally) -> int:
     code = s.take_step(t0, min(min(border - t0, s.scan_length), LONGEST * shortest_hop(s)), s.scan_length)
     if code != DONE:
         return code
-    h = s.length
     mark_resting(s)
-    if breaks(s.rows, s, h, False):
+    if breaks(s.rows, s, s.length, False):
         return DONE
+    code = find(s, s.length)
+    if code != DONE:
+        return code
+    if s.watched and s.watch.culprit >= 0:
+        return complete_to_guard(s, record, tally, s.length)
+    if s.guard >= 0:
+        return complete_to_event(s, record, tally, s.length)
+    return complete(s, record, tally, s.length)
+
+
+def find(s: Rubbing, h: float) -> int:
+    """The first event within the step of size h just made: `guard`, or `watch.culprit`, if any; a status.
+
+    When, as a fraction of h, into `found`.
+    """
     find_landings(s, h)
-    g = first_event(s, h)
-    if s.shown <= 1.0 and g != UNKNOWN:
-        g = first_stray(s, h, g)
-    if g == UNKNOWN:
+    if first_event(s, h) == UNKNOWN:
         return NOT_FINITE
-    if s.watched:
-        code = watch(s, h, 1.0 if g < 0 else s.found)
-        if code != DONE or s.watch.culprit >= 0:
-            return complete_to_guard(s, record, tally, h) if code == DONE else code
-    if g < 0:
-        interrupt(s, -1, h)
-        take_over(s, record, tally, border if h >= border - t0 else s.clock.after(h), h)
-        if s.hopping:
-            if not look(s, s.clock.t0, s.y):
-                return NOT_FINITE
-            carry(s)
-        if record.is_due(tally.steps):
-            keep(s, record, s.clock.t0, s.y)
-        return DONE
+    if s.shown <= 1.0:
+        first_stray(s, h)
+    return watch(s, h, 1.0 if s.guard < 0 else s.found) if s.watched else DONE
+
+
+def complete(s: Rubbing, record: Record, tally: Tally, h: float) -> int:
+    """Take over the step of size h, in which nothing happens; a status."""
+    border = min(s.t_end, s.clock.high)
+    interrupt(s, -1, h)
+    take_over(s, record, tally, border if h >= border - s.clock.t0 else s.clock.after(h), h)
+    if s.hopping:
+        if not look(s, s.clock.t0, s.y):
+            return NOT_FINITE
+        carry(s)
+    if record.is_due(tally.steps):
+        keep(s, record, s.clock.t0, s.y)
+    return DONE
+
+
+def complete_to_event(s: Rubbing, record: Record, tally: Tally, h: float) -> int:
+    """The step up to the guard found within it, and what comes next; a status."""
+    g, border, code = s.guard, min(s.t_end, s.clock.high), DONE
     if of_force(s, g):
         code = look_ahead(s, h)
         if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
             return code
-    tau = land(s, g, border - t0) if is_landing(s, g) else locate(s, g, h, border - t0)
+    longest = border - s.clock.t0
+    tau = land(s, g, longest) if is_landing(s, g) else locate(s, g, h, longest)
     if tau == UNKNOWN:
         return NOT_FINITE
     if of_sliding(s, g) and turns_at_once(s, g, tau, h):
