@@ -41,3 +41,21 @@ def test_a_blow_that_does_not_reach_it_lets_nothing_slip(method, angle):
 def test_nor_in_sparse_steps():
     run = simulate(blocks(sparse.csr_array, 0.47), Moreau(1e-2), keep=[0.55, 1.5])
     np.testing.assert_allclose(run.q[1, :2], run.q[0, :2], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-2, order=4), Located(1e-2)])
+def test_a_blow_that_leaves_no_sliding_lets_nothing_slip(method):
+    """Two bodies that share a mass; the one that sticks by mu_s is struck through it, and its impulses cancel."""
+    mass = [
+        [6.88, 0.91, -0.08, 0.26], [0.91, 2.83, 0.07, 0.2], [-0.08, 0.07, 4.38, -1.61], [0.26, 0.2, -1.61, 5.26]
+    ]  # fmt: skip
+    rubbing = Coulomb([0.64, 0.41], [[0.98, -0.21, 0, 0], [0, 0, 0.91, -0.42]], mu_s=[0.83, 0.54])
+    scene = Scene(
+        LinearSystem(mass, force=[-1.07, -27.74, 0.56, -51.62]), [0.0, 1.81, 0.0, 1.53], [-0.46, 2.58, -4.19, 0.03],
+        (0.0, 2.0), LinearContacts([[0.21, 0.98, 0, 0], [0, 0, 0.42, 0.91]], friction=rubbing),
+    )  # fmt: skip
+    run = simulate(scene, method, keep=[0.6, 2.0])
+    log = run.impacts[run.impacts.time > 0.6]
+    assert set(log.contact[log.kind == Kind.IMPACT]) == {0, 1}
+    assert not np.any(log.kind == Kind.SLIP)
+    np.testing.assert_allclose(run.q[1, 2:], run.q[0, 2:], rtol=0, atol=1e-12)

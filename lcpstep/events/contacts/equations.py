@@ -141,9 +141,14 @@ def load_terms(s: Rubbing, j: int) -> float:
 
 
 def apply(s: Rubbing, i: int, p: float) -> None:
-    """Apply the impulse p on row i; it is summed up for the next kept state."""
+    """Apply the impulse p on row i; it is summed up for the next kept state.
+
+    Of what impulses make of a velocity, and take from it again, rounding is left.
+    """
     for j in range(s.n_q):
         s.v[j] += s.MR[i * s.n_q + j] * p
+    for k in range(s.n_c + s.n_t):
+        s.terms[k] = max(s.terms[k], NOISE * abs(s.W[(s.n_j + k) * s.n_r + i] * p))
     add_impulse(s, i, p)
 
 
