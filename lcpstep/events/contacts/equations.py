@@ -87,8 +87,8 @@ def measure_velocities(s: Rubbing, v: Doubles) -> None:
         s.velocity[i] = product(s.R, v, i, s.n_q) + s.rate[i]
     for i in range(s.n_c + s.n_t):
         k = s.n_j + i
-        size = size_of(s.rows, k, s.rate[k], v) + moment * size_of(s.rows, k, 0.0, s.a_free)
-        s.terms[i] = max(s.terms[i], NOISE * size)
+        unknown = moment * size_of(s.rows, k, 0.0, s.a_free)
+        s.terms[i] = max(s.terms[i], NOISE * size_of(s.rows, k, s.rate[k], v) + unknown)
 
 
 def sliding(s: Rubbing, c: int) -> float:

@@ -1,0 +1,19 @@
+"""Random scenes of points on slopes with friction; see `tests.random_slopes`, which looks at any number of them."""
+
+import pytest
+
+from tests.marks import shared
+from tests.random_slopes import complaints
+
+PER_TEST = 40
+
+
+@pytest.mark.parametrize("first", shared(range(0, 1200, PER_TEST), 6))
+def test_runs_end_in_one_place(first):
+    for seed in range(first, first + PER_TEST):
+        assert not complaints(seed), f"scene {seed}"
+
+
+@pytest.mark.parametrize("seed", [53, 431])
+def test_what_others_keep_hopping_comes_to_rest(seed):
+    assert not complaints(seed)
