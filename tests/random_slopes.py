@@ -1,7 +1,7 @@
 """Random scenes of points on slopes, between walls and each other, with friction.
 
 `python -m tests.random_slopes A B` looks at those from A to B. One to four points in the plane, which share masses or
-do not; slides, sticking by `mu_s`, chattering that others keep going. All end, and by independent methods in one place.
+do not; slides, sticking by `mu_s`, chattering that others keep going. All end, by independent methods in one place.
 """
 
 import sys
