@@ -17,14 +17,14 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import CERTAIN, FAINT, FOR_EVER, left, proportion
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy
+    from lcpstep.kernels.vectors import clear, copy
     from lcpstep.pointers import abs, after, max
 
 
 def look_back(s: Rubbing) -> None:
     """Compare with the velocities of now from now on."""
     copy(s.turn_velocity, s.velocity, s.n_r)
-    copy(s.turn_start, s.impulse, s.n_r)
+    clear(s.turn_impulse, s.n_r)
 
 
 def recurs(s: Rubbing) -> float:
@@ -33,8 +33,6 @@ def recurs(s: Rubbing) -> float:
     `FOR_EVER` or more where they return without loss, the sliding of what rubs included.
     """
     n_j = s.n_j
-    for i in range(s.n_r):
-        s.turn_impulse[i] = s.impulse[i] - s.turn_start[i]
     ratio = proportion(s.turn_impulse, after(s.turn_velocity, n_j), after(s.velocity, n_j), s.terms, s.n_c)
     if ratio >= FOR_EVER:
         return 0.0 if slows(s) else ratio

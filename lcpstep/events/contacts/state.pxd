@@ -31,7 +31,7 @@ cdef class Rubbing(RungeKutta):
     cdef bint constant, plain, mapped, risen
     cdef Doubles nodes, weights, q, v, a_free, a, force, dy, seen, dv, R, MR, W, S
     cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, account, instant, paces
-    cdef Doubles turn_velocity, turn_start, turn_impulse, shifted_rate, counted, total, loads, doubt, effect
+    cdef Doubles turn_velocity, turn_impulse, shifted_rate, counted, total, loads, doubt, effect
     cdef Doubles effects, mu, mu_s, slip, tangential, direction, was_direction, new_direction, terms, before
     cdef Doubles owed, lands, height, rise, bend, speed, struck, since, chatter_end, left, curve, stray
     cdef Bracket bracket

@@ -81,7 +81,7 @@ class Rubbing(RungeKutta):
     jams                         how often it did
     rounds, stalled              problems of impacts at this instant; events at one time before it
     problem                      the complementarity problem at hand, of an impact or of forces
-    turn_velocity, turn_start : (n_r,)   velocities, and `impulse`, some impacts ago;  turn_impulse   since then
+    turn_velocity, turn_impulse : (n_r,)   velocities some impacts ago;  `impulse` since then, whatever is kept
     before : (n_c,)              gap velocities before the impact at hand, 0 of what is closed
     doubt : (n_r,)               accelerations of rows that are not known where modes are sought, see `balance`
     account, instant : (n_r,)    `impulse` before the end of chattering adds to it, see `owed`; before this instant
@@ -198,10 +198,9 @@ class Rubbing(RungeKutta):
         self.value = doubles(self.looks)
         self.band = after(self.value, GUARDS * n_c)
         self.samples = after(self.band, GUARDS * n_c)
-        self.turn = np.zeros(3 * r)
+        self.turn = np.zeros(2 * r)
         self.turn_velocity = doubles(self.turn)
-        self.turn_start = after(self.turn_velocity, r)
-        self.turn_impulse = after(self.turn_start, r)
+        self.turn_impulse = after(self.turn_velocity, r)
         self.arms = np.zeros(GUARDS * n_c, dtype=np.intp)
         self.armed = indices(self.arms)
 
