@@ -272,3 +272,18 @@ def test_in_a_slit_the_wall_that_the_load_will_press_bears_it_from_the_start():
     load = 0.451 * (m.t - np.sin(10.0 * m.t) / 10.0)
     np.testing.assert_allclose(np.cumsum(m.impulse[:, 1]), load, atol=1e-11)
     assert np.max(np.abs(m.impulse[:, 0])) <= 1e-15
+
+
+def lifted_soon(t, q, v, p, out):
+    out[0] = 4.0 * (q[1] - q[0]) - 1.0 + 1e3 * t
+    out[1] = 4.0 * (q[0] - q[1])
+
+
+def test_a_body_that_nothing_presses_does_not_ask_when_another_leaves():
+    # one at the end of a relaxed spring, the other lifted off a millisecond later, within the first look
+    contacts = LinearContacts([[1.0, 0.0], [0.0, -1.0]], restitution=0.5)
+    system = LinearSystem(np.eye(2), force=lifted_soon)
+    m = simulate(Scene(system, [0.0, 0.0], [0.0, 0.0], (0.0, 0.1), contacts), EventDriven(max_events=1000))
+    leaves = m.impacts[m.impacts.kind == Kind.RELEASE]
+    np.testing.assert_array_equal(leaves.contact, [0])
+    np.testing.assert_allclose(leaves.time, 1e-3, rtol=1e-12)

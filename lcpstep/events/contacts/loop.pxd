@@ -24,7 +24,11 @@ cdef Py_ssize_t settle(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t go_further(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t progress(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t seek_modes(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+@cython.locals(open_question=bint)
 cdef Py_ssize_t look_on(Rubbing s, double t, double longest) noexcept nogil
+@cython.locals(some=bint)
+cdef bint lets_go(Rubbing s) noexcept nogil
+cdef void keep_modes(Rubbing s) noexcept nogil
 cdef void tell_left(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef Py_ssize_t follow(Rubbing s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t set_out(Rubbing s, Record record, double t) noexcept nogil

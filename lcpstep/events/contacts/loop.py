@@ -198,7 +198,8 @@ def seek_modes(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
 def look_on(s: Rubbing, t: float, longest: float) -> int:
     """The modes just after the base time, at which the forces leave some of them open; a status.
 
-    A contact whose force begins at zero is decided by the first force that can be told from zero.
+    A contact whose force begins at zero is decided by the first force that can be told from zero, unless another that
+    is pressed now is no longer there: that opens later, as its own guard says, and decides about all anew.
     """
     ahead = LOOK_AHEAD * longest
     while 0.0 < ahead <= longest:
@@ -211,7 +212,11 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
         code = decide(s)
         if code != DONE:
             return code
-        if not undecided(s):
+        open_question = undecided(s)
+        if lets_go(s):
+            keep_modes(s)
+            break
+        if not open_question:
             break
         ahead *= FURTHER
     code = adopt_modes(s)
@@ -220,6 +225,20 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
     if code != DONE:
         return code
     return DONE if measure(s, t, s.y) else NOT_FINITE
+
+
+def lets_go(s: Rubbing) -> bool:
+    """Whether a contact that a force presses, in the modes at hand, has none in those decided."""
+    some = False
+    for c in range(s.n_c):
+        some = some or (s.loaded[c] == 1 and s.mode[c] != OPEN and s.new_mode[c] == OPEN)
+    return some
+
+
+def keep_modes(s: Rubbing) -> None:
+    """The modes at hand in the place of those decided."""
+    for c in range(s.n_c):
+        s.new_mode[c], s.new_direction[c], s.new_loaded[c] = s.mode[c], s.direction[c], s.loaded[c]
 
 
 def tell_left(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
