@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from benchmarks.judge.describe import Description
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
-from lcpstep import EventDriven, Kind, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Status, simulate
 
 
 def balanced(seed):
@@ -75,3 +76,26 @@ def test_a_wedge_lets_go_of_what_it_jams_when_its_force_ends():
         assert list(released.contact) == [0]
         assert released.time[0] == pytest.approx((2.0 * np.pi + np.arccos(-A / B)) / w, abs=1e-11)
         assert np.min(m.impulse) >= 0.0
+
+
+# A force of the body's own motion that goes from one wall of a slit to the other, and a bowl whose gap at the start is
+# a difference of numbers that the place, zero, does not show
+SLIT = Description(
+    M=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), q0=(-0.0133, -0.0398, 0.925), v0=(0.199, 0.00628, 0.0376),
+    t_span=(0.0, 81.5647), h=0.0743, G=((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)), offset=(0.0133, -0.0133),
+    restitution=(1.0, 0.28), general=True, spread=0.222, pendulum=0.207, b=(0.111, 2.37, -0.553), family="slit",
+)  # fmt: skip
+BOWL = Description(
+    M=((0.000105,),), q0=(0.0,), v0=(0.0,), t_span=(0.0, 0.0943998), h=0.0218, G=((0.104,), (0.691,), (-0.344,)),
+    offset=(-0.0599, -0.0165, 0.01158), restitution=(0.33, 0.53, 0.0), constant=(-5.22e-05,), cosine=(-0.000101,),
+    sine=(3.13e-05,), force_omega=1.78, bend=(0.983, 0.343, -0.0386), round=(0.3, 0.3, 0.3), family="curved",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("drawn", [SLIT, BOWL], ids=["slit", "bowl"])
+def test_forces_and_gaps_that_are_next_to_nothing_are_passed_in_few_steps(drawn):
+    scene = drawn.scene()
+    m, other = simulate(scene, EventDriven()), simulate(scene, Located(0.2 * drawn.h, 4))
+    assert m.status is Status.DONE, m.message
+    assert m.counts.steps < 1000
+    np.testing.assert_allclose(m.q[-1], other.q[-1], rtol=0, atol=1e-6)

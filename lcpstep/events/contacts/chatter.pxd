@@ -8,6 +8,7 @@ cdef double UNTOLD, CHECKED
 
 @cython.locals(some=bint)
 cdef bint close_small(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+cdef void join(Rubbing s) noexcept nogil
 @cython.locals(slow=bint, low=bint)
 cdef double time_left(Rubbing s, Py_ssize_t c, double t) noexcept nogil
 cdef double later(Rubbing s, Py_ssize_t c, double t, double T) noexcept nogil

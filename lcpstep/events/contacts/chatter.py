@@ -27,6 +27,7 @@ if not cython.compiled:
         speed_tolerance,
     )
     from lcpstep.events.contacts.held import accelerate_as_held, hold_modes, right_hand_side
+    from lcpstep.events.contacts.impact import find_free
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.rows.equations import renew_biases, renew_rates
     from lcpstep.events.rows.held import constrain, solve_held
@@ -70,7 +71,16 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
             if abs(u) > s.terms[c]:
                 s.clock.log(record, tally, s.chatter_end[c], c, ACCUMULATION, -abs(u), 0.0, p)
             close(s, c)
+    join(s)
     return True
+
+
+def join(s: Rubbing) -> None:
+    """The forces decide about those too that touch and that the others, closed, have left without speed."""
+    for c in range(s.n_c):
+        if s.mode[c] == OPEN and s.touches[c] == 1 and abs(s.velocity[s.n_j + c]) <= s.terms[c]:
+            s.mode[c] = SLIDES
+    find_free(s)
 
 
 def time_left(s: Rubbing, c: int, t: float) -> float:

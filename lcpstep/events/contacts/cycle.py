@@ -96,7 +96,7 @@ def fades(s: Rubbing) -> bool:
     """
     for c in range(s.n_c):
         u = s.velocity[s.n_j + c]
-        u = abs(u) if s.turn_impulse[c] > 0.0 else max(-u, 0.0)
+        u = abs(u) if s.turn_impulse[c] > 0.0 or s.mode[c] != OPEN else max(-u, 0.0)
         if s.touches[c] == 1 and u > FAINT * s.terms[c]:
             return False
     for c in range(s.n_c):

@@ -134,10 +134,14 @@ def force_noise(s: Rubbing) -> float:
 
 
 def load_terms(s: Rubbing, j: int) -> float:
-    """Size of the terms of a harmonic load on coordinate j, which may cancel; of callbacks nothing finer is known."""
-    if not s.model.linear or s.model.force.given or s.model.omega == 0.0:
-        return 0.0
-    return abs(s.model.constant[j]) + abs(s.model.cosine[j]) + abs(s.model.sine[j])
+    """Size of the terms of the force on coordinate j, which may cancel; of callbacks nothing finer is known."""
+    size, n = 0.0, s.n_q
+    if s.model.linear:
+        for k in range(n):
+            size += abs(s.model.K[j * n + k] * s.q[k]) + abs(s.model.C[j * n + k] * s.v[k])
+        if not s.model.force.given:
+            size += abs(s.model.constant[j]) + abs(s.model.cosine[j]) + abs(s.model.sine[j])
+    return size
 
 
 def apply(s: Rubbing, i: int, p: float) -> None:
@@ -156,4 +160,4 @@ def add_impulse(s: Rubbing, i: int, p: float) -> None:
     """Count an impulse of row i: contacts are kept first, then tangents and joints."""
     k = i - s.n_j if i >= s.n_j else s.n_c + s.n_t + i
     s.impulse[k] = s.impulse[k] + p
-    s.turn_impulse[k] = s.turn_impulse[k] + p
+    s.turn_impulse[k] = s.turn_impulse[k] + p  # of itself: differences would depend on what has been kept

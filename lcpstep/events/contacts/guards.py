@@ -263,13 +263,14 @@ def first_fall(s: Rubbing, g: int) -> float:
     """Where guard g, whose polynomial is at hand, acts within the part, or NONE.
 
     One that begins at the bottom of its band, as at zero where nothing says yet what rounding is, acts once it has
-    fallen further by more than the rounding of its own values.
+    fallen further by more than the rounding of its own values, which may be more than that of a body just set out.
     """
     if s.armed[g] == 1:
         return 0.0 if s.scan.c[0] <= 0.0 else first_rise(s.scan, -1.0, 0.0, 0.0)
-    band, start = s.band[g], s.scan.c[0]
-    if start <= -band:
-        band = max(-2.0 * start, NOISE * largest(s.scan.c, 0.0, DEGREE + 1))
+    rounding = NOISE * largest(s.scan.c, 0.0, DEGREE + 1)
+    band, start = max(s.band[g], rounding), s.scan.c[0]
+    if start <= -s.band[g]:
+        band = max(-2.0 * start, rounding)
     up = first_rise(s.scan, 1.0, band, 0.0)
     down = first_rise(s.scan, -1.0, band, 0.0)
     if down != NONE and (up == NONE or down < up):

@@ -43,7 +43,7 @@ if not cython.compiled:
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear
+    from lcpstep.kernels.vectors import clear, copy
     from lcpstep.pointers import abs, max, min
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
@@ -178,8 +178,12 @@ def settle(s: Rubbing, record: Record, tally: Tally) -> int:
 
 
 def seek_modes(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
-    """New modes at the base state just measured, or a little later where it leaves them open; a status."""
+    """New modes at the base state just measured, or a little later where it leaves them open; a status.
+
+    What velocities are known to is that of this instant, and not of states that are looked at further on.
+    """
     longest = min(s.scan_length, min(s.t_end, s.clock.high) - t)
+    copy(s.samples, s.terms, 2 * s.n_c)
     code = decide(s)
     if s.rows.n_kept < s.n_j and contradict(s):
         return JOINTS_FAILED
@@ -192,6 +196,7 @@ def seek_modes(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
         if code == DONE:
             tell_left(s, record, tally, t)
     clear(s.doubt, s.n_r)
+    copy(s.terms, s.samples, 2 * s.n_c)
     return code
 
 

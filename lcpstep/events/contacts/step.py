@@ -178,6 +178,8 @@ def changes(s: Rubbing) -> bool:
     A force that jumps may do so later than its guard's polynomial has seen it.
     """
     some = differ(s)
+    for c in range(s.n_c):  # as where the load goes over to the other wall of a slit
+        some = some or s.new_loaded[c] != s.loaded[c]
     if not some:
         find_standing(s)
     return some
