@@ -78,8 +78,8 @@ def test_a_wedge_lets_go_of_what_it_jams_when_its_force_ends():
         assert np.min(m.impulse) >= 0.0
 
 
-# A force of the body's own motion that goes from one wall of a slit to the other, and a bowl whose gap at the start is
-# a difference of numbers that the place, zero, does not show
+# A force of the body's own motion that goes from one wall of a slit to the other, and a bowl whose gap at the start
+# is a difference of numbers that the place, zero, does not show
 SLIT = Description(
     M=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), q0=(-0.0133, -0.0398, 0.925), v0=(0.199, 0.00628, 0.0376),
     t_span=(0.0, 81.5647), h=0.0743, G=((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)), offset=(0.0133, -0.0133),

@@ -10,7 +10,6 @@ cdef bint look_at_stage(Rubbing s, Py_ssize_t stage, double t, double* y) noexce
 cdef bint read(Rubbing s, double t, double* y) noexcept nogil
 cdef bint begin_guards(Rubbing s, double t) noexcept nogil
 cdef double no_gap(Rubbing s, Py_ssize_t c, double u, double alpha) noexcept nogil
-cdef double low_flight(double u, double alpha, double band) noexcept nogil
 @cython.locals(fine=bint, risen=bint, turns=bint, error=double, most=double, hidden=double, place=double)
 cdef Py_ssize_t first_event(Rubbing s, double h) noexcept nogil
 @cython.locals(seen=bint)

@@ -121,15 +121,6 @@ def no_gap(s: Rubbing, c: int, u: float, alpha: float) -> float:
     return min(least, LOW * u * u / -alpha) if u > 0.0 and alpha < 0.0 else least
 
 
-def low_flight(u: float, alpha: float, band: float) -> float:
-    """How long a hop takes, from its speed and acceleration, that does not rise out of the band of its gap; else 0.
-
-    Of so low a hop gaps tell but rounding: seen below its band, a body would land too fast, each time.
-    """
-    half = 0.5 * alpha
-    return 0.0 if u <= 0.0 or half >= 0.0 or u * u > -4.0 * half * band else -u / half
-
-
 def first_event(s: Rubbing, h: float) -> int:
     """The first guard that acts within the step of size h, -1 or UNKNOWN; when, into `found`, as a fraction of h."""
     n, parts, part = GUARDS * s.n_c, 1, 0

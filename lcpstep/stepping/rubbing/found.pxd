@@ -28,5 +28,6 @@ cdef Py_ssize_t bend(Strides s, Py_ssize_t g, double h) noexcept nogil
 cdef void elevate(Strides s, Py_ssize_t least) noexcept nogil
 @cython.locals(rises=bint)
 cdef double low_hop(Strides s, Py_ssize_t g, double h) noexcept nogil
+cdef double low_flight(double u, double alpha, double band) noexcept nogil
 @cython.locals(crossed=bint)
 cdef double locate(Strides s, Py_ssize_t g, double h) noexcept nogil

@@ -18,7 +18,7 @@ from lcpstep.events.contacts.codes import OPEN, SLIDES
 
 if not cython.compiled:
     from lcpstep.events.contacts.equations import rubs
-    from lcpstep.events.contacts.guards import first_fall, low_flight, read
+    from lcpstep.events.contacts.guards import first_fall, read
     from lcpstep.events.contacts.state import GUARDS
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
     from lcpstep.events.rows.equations import measure_biases, renew_rates, size_of
@@ -240,6 +240,15 @@ def low_hop(s: Strides, g: int, h: float) -> float:
     if g % GUARDS > 0 or s.mode[c] != OPEN or s.armed[g] == 1:
         return 0.0
     return min(low_flight(s.begin_slope[g], s.begin_bend[c], s.band[g]), h)
+
+
+def low_flight(u: float, alpha: float, band: float) -> float:
+    """How long a hop takes, from its speed and acceleration, that does not rise out of the band of its gap; else 0.
+
+    Of so low a hop gaps tell but rounding: seen below its band, a body would land too fast, each time.
+    """
+    half = 0.5 * alpha
+    return 0.0 if u <= 0.0 or half >= 0.0 or u * u > -4.0 * half * band else -u / half
 
 
 def locate(s: Strides, g: int, h: float) -> float:
