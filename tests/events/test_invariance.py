@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep import EventDriven, Kind, Status, simulate
 from tests.events.test_corners_and_slits import bundle
 from tests.marks import shared
@@ -100,3 +100,23 @@ def test_a_motion_goes_on_from_its_middle_as_if_it_had_not_been_stopped(seed):
     rest = Scene(scene.system, q, v, (middle, SPAN), scene.contacts)
     t = np.linspace(middle, middle + 0.3 * (SPAN - middle), 100)
     np.testing.assert_allclose(simulate(rest, METHOD).at(t)[0], m.at(t)[0], rtol=0, atol=1e-6)
+
+
+def over_hills(t, q, v, p, out):
+    out[0] = q[1] - 0.2 * math.cos(9.0 * q[0])
+
+
+def off_hills(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 1.8 * math.sin(9.0 * q[0]), 1.0
+
+
+def test_late_times_do_not_change_the_motion_over_hills():
+    """An elastic body that falls onto hills; its impacts separate neighbours, so that little errors are seen."""
+    hills = Contacts(1, over_hills, off_hills, restitution=1.0)
+    system = LinearSystem(M=np.eye(2), force=[0.0, -250.0])
+    early, late = (
+        simulate(Scene(system, [0.1, 0.6], [1.4, 0.0], (t0, t0 + 0.5), hills), EventDriven()).impacts
+        for t0 in (0.0, 1e4)
+    )
+    assert len(early) == len(late) >= 7
+    np.testing.assert_allclose(late.before, early.before, rtol=0, atol=1e-9)

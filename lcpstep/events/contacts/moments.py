@@ -106,9 +106,12 @@ def missing(s: Rubbing, g: int) -> float:
 
 
 def creep(s: Rubbing, g: int, tau: float, change: float, longest: float) -> float:
-    """Go on from the end of the step of length tau by the little that is missing; how far that is from the base."""
+    """Go on from the end of the step of length tau by the little that is missing; how far that is from the base.
+
+    By less than a late time can tell, too: the clock keeps what rounding takes from it.
+    """
     t, f, gone = s.clock.t0 + tau, after(s.K, STAGES * s.n), 0.0
-    if abs(change) <= 2.0 * RESOLUTION * (abs(s.clock.t0) + tau):
+    if abs(change) <= 2.0 * RESOLUTION * tau:
         return tau
     copy(s.y_stage, s.y_new, s.n)
     copy(s.dy, f, s.n)
@@ -119,6 +122,6 @@ def creep(s: Rubbing, g: int, tau: float, change: float, longest: float) -> floa
         if not look(s, t + gone, s.y_new):
             return UNKNOWN
         change = missing(s, g)
-        if k > 0 and abs(change) <= 2.0 * RESOLUTION * abs(t):
+        if k > 0 and abs(change) <= 2.0 * RESOLUTION * tau:
             break
     return tau + gone
