@@ -4,9 +4,9 @@
 
     flight      one linear degree of freedom above a flat obstacle, in closed form
     arcs        one contact with friction under a constant force, in closed form
-    general     any number of contacts and joints
-    friction    the same with friction; rows of both: `rows`
-    hybrid      modes, guards and resets
+    contacts    any number of contacts and joints, with friction or without, of systems with modes as well
+    parabolas   the same without friction under constant forces, in closed form; rows of both: `rows`
+    hybrid      modes, guards and resets, without contacts
 
 Each has its `run`, from a scene to a trajectory, and its `loop`, the kernel over events. What they share lies here
 (`running`, a run in Python; `scan`, how finely motion is looked at) and in `lcpstep.kernels`.

@@ -167,7 +167,7 @@ def take_along(s: Rubbing, t: float) -> None:
     So are contacts that the forces have just opened: they meet other forces now.
     """
     for c in range(s.n_c):
-        if s.left[c] == 0.0:
+        if s.left[c] == 0.0 and s.touches[c] == 1:
             for d in range(s.n_c):
                 if s.left[d] < 0.0 and alternates(s, c, d, t) and not is_told(s, d):
                     s.left[d] = 0.0

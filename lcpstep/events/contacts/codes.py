@@ -1,4 +1,4 @@
-"""Modes of a contact with friction, what comes next in a run, and what is logged."""
+"""Modes of a contact, what comes next in a run, and what is logged."""
 
 from __future__ import annotations
 

@@ -17,7 +17,6 @@ cdef double share_left(Rubbing s) noexcept nogil
 cdef double speed_tolerance(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef double force_noise(Rubbing s) noexcept nogil
 cdef double load_terms(Rubbing s, Py_ssize_t j) noexcept nogil
-@cython.locals(own=bint)
 cdef void apply(Rubbing s, Py_ssize_t i, double p) noexcept nogil
 cdef void add_impulse(Rubbing s, Py_ssize_t i, double p) noexcept nogil
 cdef bint rubs(Rubbing s, Py_ssize_t c) noexcept nogil

@@ -99,12 +99,11 @@ def begin_guards(s: Rubbing, t: float) -> bool:
     for c in range(s.n_c):
         k, i = GUARDS * c, s.n_j + c
         if s.mode[c] == OPEN:
-            u = product(s.R, s.v, i, s.n_q) + s.rate[i]
-            alpha = product(s.R, after(s.dy, s.n_q), i, s.n_q) + s.bias[i]
-            noise = rounding_of_gap(s, c) + share * no_gap(s, c, u, alpha)
+            noise = rounding_of_gap(s, c) + share * no_gap(s, c, s.rise[c], s.bend[c])
             s.band[k] = max(noise, -2.0 * s.value[k])  # deeper than it is now
         else:
-            none = NOISE * share * speed_tolerance(s, i) / s.W[i * s.n_r + i]
+            own = s.W[i * s.n_r + i]  # none in the middle of a bowl
+            none = NOISE * share * speed_tolerance(s, i) / own if own > 0.0 else 0.0
             s.band[k] = forces + none
             s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu_s[c]) + none
             if s.mode[c] == SLIDES and rubs(s, c):

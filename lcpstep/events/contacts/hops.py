@@ -221,8 +221,8 @@ def interrupt(s: Rubbing, g: int, tau: float) -> None:
 
 def carry(s: Rubbing) -> None:
     """Beyond the end of a step without an event low hops go on, unless the surface jumps there; `dy` is known."""
-    if not s.hopping:
-        return
+    if s.rows.n_held == 0:
+        renew_biases(s.rows, s.clock.t0, s.q, s.v)
     for c in range(s.n_c):
         i = s.n_j + c
         u = product(s.R, s.v, i, s.n_q) + s.rate[i]

@@ -1,4 +1,4 @@
-"""Impacts with friction of all contacts that are closed at one time, as kernels.
+"""Impacts of all contacts that are closed at one time, as kernels.
 
     xi = u+ + r u-  on normals and tangents,  0 <= xi_N  complementary to  p_N >= 0,  p_T = -mu p_N sign(xi_T)
 
@@ -103,7 +103,10 @@ def look_before(s: Rubbing) -> None:
 
 
 def can_rest(s: Rubbing) -> bool:
-    """Whether a plastic impact would bring to rest what is struck in turn for ever: not between walls that close."""
+    """Whether a plastic impact would bring to rest what is struck in turn for ever: not between walls that close.
+
+    Contacts between which there is no room are left closed, as a message names them.
+    """
     look_before(s)
     for c in range(s.n_c):
         s.tried[c] = s.mode[c]

@@ -69,6 +69,8 @@ def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
             kind, when = RELEASE, t
             if was == OPEN:
                 kind, when = STAYS_CLOSED, max(t, s.chatter_end[c])
+            else:
+                s.chatter_end[c] = t
             s.clock.log(record, tally, when, c, kind, 0.0, s.velocity[i], 0.0)
         elif was == SLIDES and now == STICKS:
             s.clock.log(record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)

@@ -25,7 +25,7 @@ from lcpstep.events.contacts.codes import (
     SWITCH,
 )
 from lcpstep.events.ends import NO_FORCES
-from lcpstep.kernels.status import DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
+from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
     from lcpstep.events.contacts.balance import opens_any, reconsider
@@ -54,7 +54,7 @@ NO_TIME = (
 
 
 class Course(Events):
-    """A motion with friction; s : Rubbing."""
+    """A motion with contacts and joints; s : Rubbing."""
 
     def __init__(self, s: Rubbing, record: Record, tally: Tally) -> None:
         super().__init__(record, tally, record.event_capacity - record.event_capacity // 2)
@@ -68,7 +68,10 @@ class Course(Events):
 
     def happen(self) -> int:
         """The event, or what follows from it; a status."""
-        return yielding(self.s, self.record, self.tally, occur(self.s, self.record, self.tally))
+        code = yielding(self.s, self.record, self.tally, occur(self.s, self.record, self.tally))
+        if code == BUFFER_FULL and self.s.next == MOVE:  # for the impact of one that jams
+            self.s.next = SETTLE
+        return code
 
     def move(self) -> int:
         """A step of the motion, or what precedes it; a status."""
@@ -141,7 +144,7 @@ def begin(s: Rubbing) -> int:
 def turn_corner(s: Rubbing) -> int:
     """Beyond a corner, where obstacles and belts may have jumped in speed, contacts strike and modes are sought.
 
-    As without friction: u- of a closed contact is that before the jump, and its obstacle takes the body along.
+    U- of a closed contact is that before the jump, and its obstacle takes the body along.
     """
     s.clock.find_corners(s.clock.t0)
     go_beyond(s.rows, s.y, s.v)

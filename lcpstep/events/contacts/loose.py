@@ -62,6 +62,8 @@ def notice(s: Rubbing, place: float, t: float) -> None:
     if place == 1.0:
         a = after(s.K, STAGES * s.n + s.n_q)
         renew_biases(s.rows, t, s.y_new, after(s.y_new, s.n_q))
+    elif s.rows.n_held == 0:
+        renew_biases(s.rows, t, s.seen, after(s.seen, s.n_q))
     if straying(s, a, DRIFT) < 0:
         s.kept_to = place
     else:

@@ -1,4 +1,4 @@
-"""The equations of a motion with friction at one state, called from Python: field, derivative, rows, guards, forces.
+"""The equations of a motion with contacts at one state, called from Python: field, derivative, rows, guards, forces.
 
 The same functions as those of the loop, so that what walks along a finished run (derivatives, balances) sees the same
 mechanics; modes are those that `hold` is given, or that a run has found.

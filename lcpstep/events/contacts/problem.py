@@ -1,4 +1,4 @@
-"""The complementarity problem of closed contacts with friction, on the joints (`rows.on_joints`), as kernels.
+"""The complementarity problem of closed contacts, on the joints (`rows.on_joints`), as kernels.
 
 The same problem has impulses (`impact`) or forces (`modes`) for its unknowns; see `kernels.coulomb` for its form. A
 contact that slides has its friction in the column of its normal, one that may stick has an unknown of its own.

@@ -49,7 +49,7 @@ def start(
 
 
 class ContactRun(Integrated):
-    """A run with contacts that stick and slide."""
+    """A run with contacts and joints."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
         s = self.system = self.start(scene, method)

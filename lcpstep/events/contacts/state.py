@@ -130,7 +130,7 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(8 * n + (10 + ALL) * r + 1 + (n + r + 1) * (n + r))
+        self.table = np.zeros(8 * n + (10 + ALL) * r + 1 + (n + r) ** 2)
         self.q, self.v = self.y, after(self.y, n)
         self.a_free, self.force = self.rows.a_free, self.rows.force
         self.R, self.MR, self.W = self.rows.R, self.rows.MR, self.rows.D

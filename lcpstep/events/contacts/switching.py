@@ -2,7 +2,7 @@
 
     M v' = M a_mode(t, q, v) + G^T lambda,      0 <= g  complementary to  lambda >= 0,      u+ = -r u-
 
-Contacts are those of the loop for any system; here its acceleration changes at guards. They are found and located by
+Contacts are those of `loop`; here the acceleration changes at guards. They are found and located by
 what does so for systems without contacts (`events.hybrid`), along the motion that the contacts leave: `Watched` is
 its `Motion`, whose field has the contact forces in it. The other way round, modes of contacts made from guards and
 resets, would have said impacts of several contacts, chattering and release a second time, in 2^n modes.

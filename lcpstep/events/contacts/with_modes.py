@@ -83,6 +83,6 @@ class RunWithModes(ContactRun):
                 f"the reset of the switch to mode {self.mode!r} leads inside the obstacle of contact "
                 f"{self.system.culprit} {self.where}"
             )
-        if code == Status.NOT_FINITE:
+        if code == Status.NOT_FINITE and not self.system.coefficients.fault():
             return f"{hybrid_culprit(self.modes, self.mode)} {self.where}"
         return f"{super().why(code)}, mode {self.mode!r}"

@@ -26,8 +26,6 @@ def measure(s: Mechanism, t: float) -> bool:
     renew_biases(s, t, q, v)
     renew_rates(s, t, q, v)
     respond(s)
-    for i in range(n_j):
-        s.joint.speed[i] = product(s.R, v, i, s.n_q) + s.joint.rate[i]
     for i in range(s.n_c):
         s.contact.speed[i] = product(s.R, v, n_j + i, s.n_q) + s.contact.rate[i]
         size = s.contact.speed[i] + s.contact.gap[i] + s.contact.bias[i]
@@ -37,15 +35,13 @@ def measure(s: Mechanism, t: float) -> bool:
 
 
 def measure_gaps(s: Mechanism, t: float) -> None:
-    """Gaps of joints and contacts."""
+    """Gaps of the contacts."""
     if s.n_c > 0:
         gaps(s.model, t, s.q, s.v, s.contact.gap)
-    if s.n_j > 0:
-        gaps(s.joints, t, s.q, s.v, s.joint.gap)
 
 
 def gap_tolerance(s: Mechanism, c: int) -> float:
-    """The gap of contact c that `lift` takes out without moving a coordinate by more than its tolerance."""
+    """The gap of contact c that goes without moving a coordinate by more than its tolerance."""
     return least_effect(s, s.n_j + c, s.q)
 
 

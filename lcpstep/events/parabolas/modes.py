@@ -93,7 +93,7 @@ def let_go(s: Mechanism) -> None:
 def rejoin(s: Mechanism) -> None:
     """After the last impact of an instant the forces decide anew about the contacts that parted and still touch."""
     for c in range(s.n_c):
-        touches = s.contact.gap[c] <= rounding_of_gap(s, c)  # a reset may have put it elsewhere
+        touches = s.contact.gap[c] <= rounding_of_gap(s, c)
         if s.contact.parting[c] == 1 and touches and abs(s.contact.speed[c]) <= speed_noise(s, c):
             s.contact.closed[c], s.contact.speed[c] = 1, 0.0
         s.contact.parting[c] = 0

@@ -1,4 +1,4 @@
-"""Motion under constant acceleration, that can be asked for any time within a piece, as kernels: state, impulses."""
+"""Motion under constant acceleration, as kernels: state, impulses."""
 
 from __future__ import annotations
 
