@@ -72,10 +72,13 @@ def lift(s: Rubbing, c: int) -> bool:
 
 
 def is_known(s: Rubbing, c: int, way: Doubles, speed: float) -> bool:
-    """Whether a time that cannot be told leaves the normal of contact c what it is, as it does not in mid-bowl."""
-    moment = s.clock.untold(s.length)
+    """Whether a time that cannot be told leaves the normal of contact c what it is, as it does not in mid-bowl.
+
+    The body goes on as it does, and as the obstacle, closing in, pushes it along `way`.
+    """
+    moment, pushed = s.clock.untold(s.length), s.rate[s.n_j + c] / speed
     for j in range(s.n_q):
-        s.seen[j] = s.q[j] + moment * s.v[j]
+        s.seen[j] = s.q[j] + moment * (s.v[j] - pushed * way[j])
     gap_rates(s.model, s.clock.t0, s.seen, s.v, s.rows.G, s.rows.near)
     return abs(product(s.rows.G, way, c, s.n_q) - speed) <= SURE * abs(speed)
 
