@@ -180,15 +180,21 @@ class Run(Portions):
         q, v = self.state
         return f"{culprit(self.scene, self.ahead, q.copy(), v.copy())} {self.where}"
 
+    def shares(self, s: States) -> tuple[Array, Array, Array]:
+        """Impulses of contacts, of their friction and of joints, each in a piece of its own."""
+        n_c, first = self.scene.n_c, self.recorder.record.n_c - self.scene.n_j
+        x, one = s.impulse, np.ascontiguousarray
+        return one(x[:, :n_c]), one(x[:, n_c:first]), one(x[:, first:])
+
     def trajectory(self, code: int) -> Any:
         """Everything computed so far."""
-        s, n_c, first = self.states(), self.scene.n_c, self.recorder.record.n_c - self.scene.n_j
-        impulse, friction, joint = s.impulse[:, :n_c], s.impulse[:, n_c:first], s.impulse[:, first:]
+        s = self.states()
+        impulse, friction, joint = self.shares(s)
         return Trajectory(
-            scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v, impulse=np.ascontiguousarray(impulse),
+            scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v, impulse=impulse,
             impacts=self.recorder.events(self.scene.t_span[1]), status=self.status(code), message=self.message(code),
-            counts=self.counts, dense=self.dense(s), joint_impulse=np.ascontiguousarray(joint),
-            friction_impulse=np.ascontiguousarray(friction),
+            counts=self.counts, dense=self.dense(s), joint_impulse=joint,
+            friction_impulse=friction,
         )  # fmt: skip
 
     def message(self, code: int) -> str:

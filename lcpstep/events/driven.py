@@ -93,26 +93,23 @@ class EventDriven:
 
         if scene.contacts is not None and scene.contacts.friction is not None:
             from lcpstep.events.arcs.line import line_of
-            from lcpstep.events.contacts.run import ContactRun
 
             line = line_of(scene)
             if line is not None:
                 from lcpstep.events.arcs.run import ArcRun
 
                 return ArcRun(self, scene, kept, line).finish(progress)
-            return ContactRun(self, scene, kept).finish(progress)
-        if scene.n_q == 1 and scene.n_c <= 1 and scene.n_j == 0 and isinstance(scene.system, LinearSystem):
-            from lcpstep.events.flight.oscillator import oscillator_of
-            from lcpstep.events.flight.run import ClosedForm
+        elif isinstance(scene.system, LinearSystem):
+            m = model(scene)
+            if scene.n_q == 1 and scene.n_c <= 1 and scene.n_j == 0:
+                from lcpstep.events.flight.oscillator import oscillator_of
+                from lcpstep.events.flight.run import ClosedForm
 
-            closed = model(scene)
-            o = oscillator_of(closed)
-            if o is not None:
-                return ClosedForm(self, scene, kept, closed, o).finish(progress)
-        if isinstance(scene.system, LinearSystem):
+                o = oscillator_of(m)
+                if o is not None:
+                    return ClosedForm(self, scene, kept, m, o).finish(progress)
             from lcpstep.events.parabolas.run import ParabolicRun, is_constant
 
-            m = model(scene)
             joints = joint_model(scene) if scene.n_j > 0 else m
             if is_constant(m, joints):
                 return ParabolicRun(self, scene, kept, m, joints).finish(progress)

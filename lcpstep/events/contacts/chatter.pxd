@@ -4,7 +4,7 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
 cdef Py_ssize_t ACCUMULATION, OPEN, SLIDES
-cdef double UNTOLD, CHECKED
+cdef double CHECKED
 
 @cython.locals(some=bint)
 cdef bint close_small(Rubbing s, Record record, Tally tally, double t) noexcept nogil
@@ -19,11 +19,11 @@ cdef double gap_of(Rubbing s, Py_ssize_t d) noexcept nogil
 cdef bint meets(Rubbing s, Py_ssize_t c, Py_ssize_t k) noexcept nogil
 @cython.locals(found=bint)
 cdef bint passes_on(Rubbing s, Py_ssize_t c) noexcept nogil
-cdef void take_along(Rubbing s, double t) noexcept nogil
+cdef void take_along(Rubbing s) noexcept nogil
 @cython.locals(fast=bint)
-cdef bint awaits(Rubbing s, Py_ssize_t c, double t) noexcept nogil
+cdef bint awaits(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef bint is_told(Rubbing s, Py_ssize_t d) noexcept nogil
-cdef bint alternates(Rubbing s, Py_ssize_t c, Py_ssize_t d, double t) noexcept nogil
+cdef bint alternates(Rubbing s, Py_ssize_t c, Py_ssize_t d) noexcept nogil
 @cython.locals(found=bint)
 cdef bint disturbs(Rubbing s) noexcept nogil
 @cython.locals(held=bint, pulls=bint, opened=bint)

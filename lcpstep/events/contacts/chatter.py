@@ -26,19 +26,17 @@ if not cython.compiled:
         rubs,
         speed_tolerance,
     )
-    from lcpstep.events.contacts.held import accelerate_as_held, hold_modes, right_hand_side
+    from lcpstep.events.contacts.held import accelerate_as_held, hold_modes, know_rows
     from lcpstep.events.contacts.impact import find_free
     from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.equations import renew_biases, renew_rates
     from lcpstep.events.rows.held import constrain, solve_held
-    from lcpstep.kernels.clock import NOISE, RESOLUTION
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.quadratic import accumulation, first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import clear, copy, largest, product
     from lcpstep.pointers import abs, after, max, min, nan
 
-UNTOLD = 4.0 * RESOLUTION  # of a time: what two impacts must be apart to be told from one
 CHECKED = 1e-10  # of the largest force: a pull that is no rounding
 
 
@@ -59,7 +57,7 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
             some = some or s.left[c] >= 0.0
     if not some:
         return False
-    take_along(s, t)
+    take_along(s)
     if disturbs(s):
         return False
     for c in range(s.n_c):
@@ -99,7 +97,7 @@ def time_left(s: Rubbing, c: int, t: float) -> float:
     if r == 1.0 or u < 0.0:
         return -1.0
     if abs(alpha) * s.since[c] <= s.terms[c]:  # an inelastic collapse
-        return 0.0 if slow and u * s.since[c] <= tolerance and not awaits(s, c, t) else -1.0
+        return 0.0 if slow and u * s.since[c] <= tolerance and not awaits(s, c) else -1.0
     if not low:
         return -1.0
     T = accumulation(u, alpha, r)
@@ -121,9 +119,7 @@ def later(s: Rubbing, c: int, t: float, T: float) -> float:
     for j in range(n):
         q[j] = s.q[j] + T * s.v[j]
         v[j] = s.v[j] + T * s.a[j]
-    if right_hand_side(s, t + T, s.seen, s.dy):
-        renew_biases(s.rows, t + T, q, v)
-        renew_rates(s.rows, t + T, q, v)
+    if know_rows(s, t + T, s.seen, s.dy):
         curve = product(s.R, after(s.dy, n), i, n) + s.bias[i]
     measure(s, t, s.y)
     hold_modes(s)
@@ -161,7 +157,7 @@ def passes_on(s: Rubbing, c: int) -> bool:
     return found
 
 
-def take_along(s: Rubbing, t: float) -> None:
+def take_along(s: Rubbing) -> None:
     """Of a collapse that is over those contacts too that are on their way to their next impact in it.
 
     So are contacts that the forces have just opened: they meet other forces now.
@@ -169,18 +165,18 @@ def take_along(s: Rubbing, t: float) -> None:
     for c in range(s.n_c):
         if s.left[c] == 0.0 and s.touches[c] == 1:
             for d in range(s.n_c):
-                if s.left[d] < 0.0 and alternates(s, c, d, t) and not is_told(s, d):
+                if s.left[d] < 0.0 and alternates(s, c, d) and not is_told(s, d):
                     s.left[d] = 0.0
     for c in range(s.n_c):
         if s.mode[c] == OPEN and s.touches[c] == 1 and abs(s.velocity[s.n_j + c]) <= s.terms[c]:
             s.left[c] = 0.0
 
 
-def awaits(s: Rubbing, c: int, t: float) -> bool:
+def awaits(s: Rubbing, c: int) -> bool:
     """Whether a contact that alternates with contact c in its collapse is still too fast to be closed with it."""
     fast = False
     for d in range(s.n_c):
-        fast = fast or (alternates(s, c, d, t) and is_told(s, d))
+        fast = fast or (alternates(s, c, d) and is_told(s, d))
     return fast
 
 
@@ -189,9 +185,9 @@ def is_told(s: Rubbing, d: int) -> bool:
     return -s.velocity[s.n_j + d] > speed_tolerance(s, s.n_j + d) or gap_of(s, d) > gap_tolerance(s, d)
 
 
-def alternates(s: Rubbing, c: int, d: int, t: float) -> bool:
+def alternates(s: Rubbing, c: int, d: int) -> bool:
     """Whether contact d, which nothing presses, strikes before contact c, which has just struck, does so again."""
-    g, u, since = gap_of(s, d), s.velocity[s.n_j + d], max(s.since[c], UNTOLD * abs(t))
+    g, u, since = gap_of(s, d), s.velocity[s.n_j + d], max(s.since[c], s.clock.untold(0.0))
     if d == c or s.mode[d] != OPEN or not (g > 0.0 and u < 0.0 and g <= -u * since):
         return False
     return abs(s.curve[d]) * since <= s.terms[d] and (passes_on(s, c) or meets(s, c, s.n_j + d))

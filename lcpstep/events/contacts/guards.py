@@ -139,9 +139,8 @@ def first_event(s: Rubbing, h: float) -> int:
             copy(s.scan.sample, after(s.samples, g * SAMPLES), SAMPLES)
             error, most = convert(s.scan), largest(s.scan.sample, 0.0, SAMPLES)
             if error > RESOLVED * most + s.band[g]:
-                hidden = (
-                    parts * NOISE * (abs(s.clock.t0) + h) / h
-                )  # of a gap that a shorter part changes by all of it
+                # Of a gap that a shorter part changes by all of it
+                hidden = parts * NOISE * (abs(s.clock.t0) + h) / h
                 turns = s.mode[g // GUARDS] == OPEN and error > (UNSEEN + hidden) * most
                 if parts < (MOST_PARTS if turns else PARTS):
                     fine = False

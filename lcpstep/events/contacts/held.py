@@ -142,6 +142,16 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     return a[0] - a[0] == 0.0
 
 
+def know_rows(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
+    """The same, and rates and biases of all rows, if none is held as well."""
+    if not right_hand_side(s, t, y, dy):
+        return False
+    if s.rows.n_held == 0:
+        renew_rates(s.rows, t, y, after(y, s.n_q))
+        renew_biases(s.rows, t, y, after(y, s.n_q))
+    return True
+
+
 def accelerate(s: Rubbing, t: float, y: Doubles, a: Doubles) -> None:
     """Acceleration, and multipliers by row, where rows and masses never change: linear in forces and biases."""
     n, m = s.n_q, s.n_q + s.n_r

@@ -24,18 +24,17 @@ if not cython.compiled:
         rounding_of_gap,
         speed_tolerance,
     )
-    from lcpstep.events.contacts.held import right_hand_side
+    from lcpstep.events.contacts.held import know_rows
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.hybrid.roots import NONE
-    from lcpstep.events.rows.equations import renew_biases, renew_rates, size_of
+    from lcpstep.events.rows.equations import renew_biases, size_of
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.vectors import largest, product
     from lcpstep.pointers import abs, after, inf, max, min, nan
 
-NEVER = (
-    -2.0
-)  # in place of a landing: there is none within the step; NONE where the gap itself is to be looked at
+# In place of a landing: there is none within the step; it is NONE where the gap itself is to be looked at
+NEVER = -2.0
 
 # Gauss' nodes on [0, 1], and weights, the same for the outer and for the inner two
 NODE_0, NODE_1, NODE_2, NODE_3 = (
@@ -169,11 +168,8 @@ def change_of_bend(s: Rubbing, c: int, tau: float) -> float:
     """By how much the gap acceleration at tau after the base differs from that at the base."""
     i, t = s.n_j + c, s.clock.t0 + tau
     s.at(tau / s.length, s.seen)
-    if not right_hand_side(s, t, s.seen, s.dy):
+    if not know_rows(s, t, s.seen, s.dy):
         return nan
-    if s.rows.n_held == 0:
-        renew_rates(s.rows, t, s.seen, after(s.seen, s.n_q))
-        renew_biases(s.rows, t, s.seen, after(s.seen, s.n_q))
     return product(s.R, after(s.dy, s.n_q), i, s.n_q) + s.bias[i] - s.bend[c]
 
 

@@ -12,6 +12,7 @@ cdef void look_before(Rubbing s) noexcept nogil
 @cython.locals(found=bint)
 cdef bint can_rest(Rubbing s) noexcept nogil
 cdef (Py_ssize_t, Py_ssize_t) gather(Rubbing s, bint plastic) noexcept nogil
+cdef (Py_ssize_t, Py_ssize_t) pose(Rubbing s) noexcept nogil
 cdef void take_for_none(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef bint strike_together(Rubbing s, Record record, Tally tally, double t, bint plastic) noexcept nogil
 @cython.locals(share=double, own=bint)

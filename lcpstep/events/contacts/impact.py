@@ -135,11 +135,16 @@ def strike_together(s: Rubbing, record: Record, tally: Tally, t: float, plastic:
 
 
 def gather(s: Rubbing, plastic: bool) -> tuple[int, int]:
-    """The contacts that take part in an impact, and their problem; how many, and how many have unknown friction."""
+    """The contacts that take part in an impact, and their problem; see `pose`."""
     for c in range(s.n_c):
         least = s.terms[c] if s.parting[c] == 0 else -s.terms[c]
         if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= least):
             s.mode[c] = SLIDES
+    return pose(s)
+
+
+def pose(s: Rubbing) -> tuple[int, int]:
+    """The problem of the closed contacts on the joints; how many, and how many have unknown friction."""
     s.coefficients.use(s.problem.mu)
     hold_joints(s.rows)
     n_a, n_f = list_unknowns(s)
@@ -208,10 +213,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     for c in range(s.n_c):
         s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
         s.free[c], s.touches[c] = 1, 1 if s.mode[c] != OPEN else 0
-    s.coefficients.use(s.problem.mu)
-    hold_joints(s.rows)
-    n_a, n_f = list_unknowns(s)
-    fill(s, n_a, n_f)
+    n_a, n_f = pose(s)
     for a in range(n_a):
         s.problem.rate[a] = 0.0
         s.problem.slow[a] = 0.0 if s.in_turn else inf

@@ -14,9 +14,9 @@ from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
     from lcpstep.events.contacts.equations import rubs
-    from lcpstep.events.contacts.held import right_hand_side
+    from lcpstep.events.contacts.held import know_rows
     from lcpstep.events.contacts.state import GUARDS, Rubbing
-    from lcpstep.events.rows.equations import renew_biases, renew_rates, size_of_acceleration
+    from lcpstep.events.rows.equations import renew_biases, size_of_acceleration
     from lcpstep.events.rows.held import is_held
     from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.vectors import product
@@ -102,11 +102,8 @@ def straying_at(s: Rubbing, place: float, h: float, level: float) -> int:
     """`straying` at that fraction of the step of size h; -1 where a state is not finite."""
     t = s.clock.t0 + place * h
     s.at(place, s.seen)
-    if not right_hand_side(s, t, s.seen, s.dy):
+    if not know_rows(s, t, s.seen, s.dy):
         return -1
-    if s.rows.n_held == 0:
-        renew_rates(s.rows, t, s.seen, after(s.seen, s.n_q))
-        renew_biases(s.rows, t, s.seen, after(s.seen, s.n_q))
     return straying(s, after(s.dy, s.n_q), level)
 
 

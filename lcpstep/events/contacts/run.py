@@ -49,7 +49,9 @@ def start(
 
 
 class ContactRun(Integrated):
-    """A run with contacts and joints."""
+    """A run with contacts and joints; `fields`: those of all modes, of a system that has some."""
+
+    fields: Functions | None = None
 
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
         s = self.system = self.start(scene, method)
@@ -58,7 +60,8 @@ class ContactRun(Integrated):
 
     def start(self, scene: Scene, method: Any) -> Any:
         """The motion at the start of the span."""
-        return start(scene, Smooth, method.rtol, method.atol, yields=method.jamming == "impact")
+        yields = method.jamming == "impact"
+        return start(scene, Smooth, method.rtol, method.atol, yields=yields, modes=self.fields)
 
     def message(self, code: int) -> str:
         """How the run ended, in words."""

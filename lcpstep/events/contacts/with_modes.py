@@ -12,8 +12,7 @@ import numpy as np
 from lagrangian import HybridScene, Scene
 from lagrangian.mechanical import mechanics
 from lcpstep.culprits import hybrid_culprit
-from lcpstep.events.contacts.run import ContactRun, start
-from lcpstep.events.contacts.smooth import Smooth
+from lcpstep.events.contacts.run import ContactRun
 from lcpstep.events.contacts.switching import Watched
 from lcpstep.events.ends import INSIDE
 from lcpstep.events.hybrid.machine import machine
@@ -30,18 +29,18 @@ class RunWithModes(ContactRun):
     def __init__(self, method: Any, modes: HybridScene, kept: Kept) -> None:
         if modes.system.surfaces:
             raise refused("modes-surfaces", modes)
-        self.modes = modes
+        self.modes, self.machine = modes, machine(modes)
+        self.fields = self.machine.fields
         super().__init__(method, mechanics(modes), kept)
         self.log = self.system.watch.take()[2]
 
     def start(self, scene: Scene, method: Any) -> Any:
         """The motion at the start of the span, in its mode."""
-        modes, m = self.modes, machine(self.modes)
-        s = start(scene, Smooth, method.rtol, method.atol, yields=method.jamming == "impact", modes=m.fields)
+        modes, s = self.modes, super().start(scene, method)
         long = modes.t_span[1] - modes.t_span[0]
         watched = Watched(
-            m, modes.t_span[1], method.rtol, method.atol, long, method.max_events, 0, SWITCHES, scene.n_q
-        )
+            self.machine, modes.t_span[1], method.rtol, method.atol, long, method.max_events, 0, SWITCHES, scene.n_q
+        )  # fmt: skip
         s.watch_modes(watched)
         s.watch.mode = s.model.mode = modes.system.names.index(modes.mode)
         s.watch.now = modes.t_span[0]
@@ -60,7 +59,8 @@ class RunWithModes(ContactRun):
 
     def trajectory(self, code: int) -> HybridTrajectory:
         """Everything computed so far."""
-        s, n_c, names = self.states(), self.scene.n_c, self.modes.system.names
+        s, names = self.states(), self.modes.system.names
+        impulse, friction, _ = self.shares(s)
         start = names.index(self.modes.mode)
         entered = np.concatenate([[start], self.log[:, 2]]).astype(np.int64)
         mode = entered[np.searchsorted(self.log[:, 0], s.t, side="right")]
@@ -69,8 +69,7 @@ class RunWithModes(ContactRun):
         return HybridTrajectory(
             scene=self.modes, method=self.method, t=pieces.t, x=pieces.x, mode=np.array(names)[mode],
             switches=switch_log(self.modes, self.log), status=self.status(code), message=self.message(code),
-            counts=self.counts, pieces=pieces, impulse=np.ascontiguousarray(s.impulse[:, :n_c]),
-            friction_impulse=np.ascontiguousarray(s.impulse[:, n_c : self.recorder.record.n_c - self.scene.n_j]),
+            counts=self.counts, pieces=pieces, impulse=impulse, friction_impulse=friction,
             impacts=self.recorder.events(self.scene.t_span[1]),
         )  # fmt: skip
 

@@ -4,7 +4,6 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
 cdef Py_ssize_t ACCUMULATION
-cdef double UNTOLD
 
 @cython.locals(moved=bint, some=bint, touches=bint)
 cdef bint close_chatter(Mechanism s, Record record, Tally tally) noexcept nogil

@@ -24,14 +24,11 @@ if not cython.compiled:
     from lcpstep.events.parabolas.problem import CHECKED
     from lcpstep.events.parabolas.state import Mechanism
     from lcpstep.events.rows.held import constrain, is_held, solve_held
-    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.quadratic import accumulation, first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import clear, copy, largest
     from lcpstep.pointers import abs, max
-
-UNTOLD = 4.0 * RESOLUTION  # of a time: what two impacts must be apart to be told from one
 
 
 def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
@@ -224,7 +221,7 @@ def is_told(s: Mechanism, d: int) -> bool:
 
 def alternates(s: Mechanism, c: int, d: int) -> bool:
     """Whether contact d, which nothing presses, strikes before contact c, which has just struck, does so again."""
-    g, u, since = s.contact.gap[d], s.contact.speed[d], max(s.contact.since[c], UNTOLD * abs(s.t0))
+    g, u, since = s.contact.gap[d], s.contact.speed[d], max(s.contact.since[c], s.untold(0.0))
     if d == c or s.contact.closed[d] == 1 or not (g > 0.0 and u < 0.0 and g <= -u * since):
         return False
     free = abs(s.contact.curve[d]) * since <= speed_noise(s, d)

@@ -19,7 +19,6 @@ if not cython.compiled:
     from lcpstep.events.parabolas.keep import keep_event
     from lcpstep.events.parabolas.motion import rebase, rounding_of_gap
     from lcpstep.events.parabolas.state import JUMP, Mechanism
-    from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import FOR_EVER, looks_back
     from lcpstep.kernels.tally import Tally
@@ -66,7 +65,7 @@ def jump(s: Mechanism, record: Record, tally: Tally) -> int:
 def just_opened(s: Mechanism, c: int) -> bool:
     """Whether contact c has struck at this instant, as far as can be told, and the forces have opened it."""
     rises = s.contact.closed[c] == 0 and s.contact.curve[c] > 0.0
-    return rises and s.t0 - s.contact.struck[c] <= 4.0 * RESOLUTION * abs(s.t0)
+    return rises and s.t0 - s.contact.struck[c] <= s.untold(0.0)
 
 
 def let_go(s: Mechanism) -> None:
