@@ -71,11 +71,11 @@ def matrix(name: str, value: ArrayLike) -> Array:
 def _real(name: str, value: ArrayLike) -> Array:
     """Numbers, and nothing that could be taken for such: no text, no truth values, nothing masked."""
     try:
-        given = np.array(value)
+        given = np.array(value)  # a copy
         texts = given.dtype == object and any(isinstance(x, (str, bytes, bool)) for x in given.flat)
         if given.dtype.kind not in "iufO" or texts or _holds_truth(value) or _is_masked(value):
             raise TypeError
-        return np.array(given, dtype=np.float64)
+        return given.astype(np.float64, copy=False)
     except (TypeError, ValueError, OverflowError):  # an integer beyond all floating-point numbers
         raise ValueError(f"{name}: expected real numbers, got {value!r}") from None
 
@@ -83,7 +83,7 @@ def _real(name: str, value: ArrayLike) -> Array:
 def _is_masked(value: Any) -> bool:
     """Whether an array has masked entries; there are none before `numpy.ma` has been loaded, which takes its time."""
     ma: Any = sys.modules.get("numpy.ma")
-    return ma is not None and bool(ma.is_masked(value))
+    return ma is not None and isinstance(value, ma.MaskedArray) and bool(ma.is_masked(value))
 
 
 def _holds_truth(value: Any) -> bool:
@@ -95,7 +95,9 @@ def _holds_truth(value: Any) -> bool:
 
 def vector(name: str, value: ArrayLike) -> Array:
     """Real finite numbers in one dimension, any number of them; a number stands for one."""
-    given = np.atleast_1d(_real(name, value))
+    given = _real(name, value)
+    if given.ndim == 0:
+        given = given.reshape(1)
     if given.ndim != 1:
         raise ValueError(f"{name}: expected one dimension, got shape {given.shape}")
     return _finite(name, given, given)

@@ -54,10 +54,11 @@ class Kept:
                 raise ValueError(f"keep: expected to keep every 1st, 2nd, ... step, got {keep!r}")
             return cls(checks.count("keep", int(keep)), False, NOTHING)
         try:
-            times = np.array(checks.vector("keep", keep))
+            times = checks.vector("keep", keep)
         except ValueError:
             raise ValueError(f"keep: expected increasing times, got {keep!r}") from None
-        if np.ndim(keep) != 1 or len(times) == 0 or not (times[1:] > times[:-1]).all():
+        n_dim = getattr(keep, "ndim", 1 if hasattr(keep, "__len__") else 0)
+        if n_dim != 1 or len(times) == 0 or not (times[1:] > times[:-1]).all():
             raise ValueError("keep: expected increasing times in an array of one dimension")
         if not (t_span[0] <= times[0] and times[-1] <= t_span[1]):
             raise ValueError(f"keep: expected times within the span {t_span}, got {times[0]} .. {times[-1]}")
