@@ -27,7 +27,8 @@ def interior_point(W: Any, b: Any, factors: Factoriser) -> tuple[Any, int]:
     z, w, scale = start(W, b)
     for step in range(STEPS):
         mu, defect = float(z @ w) / n, W @ z + b - w
-        if mu <= SMALLEST * scale and np.max(np.abs(defect)) <= SMALLEST * np.max(np.abs(w)):
+        done = mu <= SMALLEST * scale and np.max(np.abs(defect)) <= SMALLEST * np.max(np.abs(w))
+        if done or mu == 0.0:  # products of numbers near the smallest that there are come to nothing
             return z, step
         try:
             solve = factors.factor(everywhere, w / z)

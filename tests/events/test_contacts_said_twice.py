@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.linalg import null_space
 
-from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, Scene
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
 
 METHODS = [EventDriven(), Located(1e-3), Located(1e-2, order=4), Located(1e-2, tolerance=1e-6), Moreau(1e-3)]
@@ -59,3 +59,17 @@ def test_they_change_no_motion(method, slit):
         assert again.status == Status.DONE, (seed, again.message)
         near = 1e-5 if getattr(method, "tolerance", None) else 1e-7
         assert np.max(np.abs(again.q[-1] - once.q[-1])) < near * (0.1 + np.max(np.abs(once.q[-1]))), seed
+
+
+def test_feet_on_a_line_push_whichever_of_them_the_forces_found_are_of():
+    """Seven feet of a board, pressed by a spring, share two normals: forces of three of them are one too many."""
+    feet = np.column_stack([np.ones(7), np.round(np.linspace(-0.5, 0.5, 7), 3)])
+    board = LinearSystem(
+        np.diag([1.0, 0.0924]), K=[[1.01, 2.82], [2.82, 7.91]], force=Harmonic(constant=[-9.81, 0.0])
+    )
+    ground = LinearContacts(feet, np.zeros(7), restitution=0.25)
+    run = simulate(Scene(board, [0.0, 0.0], [1.96, -0.314], (0.0, 1.3699), contacts=ground), EventDriven())
+    assert np.min(run.impulse) >= 0.0
+    at_rest = np.flatnonzero(run.t > 0.6)
+    weight = np.array([9.81, 0.0]) * (run.t[-1] - run.t[at_rest[0] - 1])
+    np.testing.assert_allclose(feet.T @ run.impulse[at_rest].sum(axis=0), weight, atol=1e-9)

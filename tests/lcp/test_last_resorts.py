@@ -122,3 +122,14 @@ def test_what_has_no_solution_says_so_in_time():
     solution = solve_lcp(W, b)
     assert not solution.solved
     assert not solve_lcp(W, b, method="enumeration").solved
+
+
+@pytest.mark.parametrize("size", [1e-323, 1e-310, 1e-200])
+def test_numbers_near_the_smallest_that_there_are_raise_nothing(size):
+    """Their products come to nothing; feet on a line, whose gaps are such."""
+    feet = np.column_stack([np.ones(5), np.linspace(-1.0, 1.0, 5)])
+    W, b = feet @ np.diag([1.0, 10.0]) @ feet.T, size * np.array([-4.0, -2.0, 0.0, 2.0, 4.0])
+    for method in ("auto", "lemke", "newton"):
+        solution = solve_lcp(W, b, method=method)
+        assert np.all(solution.z >= 0.0)
+        assert np.max(np.abs(solution.z)) <= 10.0 * size

@@ -32,7 +32,7 @@ if not cython.compiled:
         hold_modes,
     )
     from lcpstep.events.contacts.keep import tell
-    from lcpstep.events.contacts.problem import fill, list_unknowns, row_of, solve_forces
+    from lcpstep.events.contacts.problem import fill, leave_independent, list_unknowns, row_of, solve_forces
     from lcpstep.events.contacts.several import opened_or_closed
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.rows.equations import size_of_acceleration
@@ -77,6 +77,8 @@ def decide(s: Rubbing) -> int:
         begins = False
         if not (s.coefficients.two and begin_to_slide(s, n_a, n_f)):
             read_modes(s, n_a, n_f)
+            if n_f == 0:
+                leave_independent(s, n_a)
             return DONE
 
 

@@ -9,3 +9,5 @@ cdef void fill(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 @cython.locals(found=bint)
 cdef bint solve_forces(Rubbing s, Py_ssize_t n_a, Py_ssize_t n_f) noexcept nogil
 cdef void allow(Rubbing s, Py_ssize_t n_a, double sign) noexcept nogil
+@cython.locals(slides=bint)
+cdef void leave_independent(Rubbing s, Py_ssize_t n_a) noexcept nogil

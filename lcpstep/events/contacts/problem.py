@@ -14,8 +14,10 @@ if not cython.compiled:
     from lcpstep.events.contacts.equations import rubs
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.rows.equations import size_of_acceleration
+    from lcpstep.events.rows.loads import unload
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.coulomb import solve_contacts
+    from lcpstep.kernels.vectors import clear
 
 
 def row_of(s: Rubbing, a: int, n_a: int) -> int:
@@ -70,3 +72,20 @@ def allow(s: Rubbing, n_a: int, sign: float) -> None:
     for a in range(n_a):
         size = size_of_acceleration(s.rows, row_of(s, a, n_a), s.a)
         s.problem.rate[a] = s.problem.rate[a] + sign * NOISE * size
+
+
+def leave_independent(s: Rubbing, n_a: int) -> None:
+    """Of contacts that all slide leave the load to independent ones: those held first push, whichever they are.
+
+    Feet on a line share two normals, and the forces found may be of three.
+    """
+    clear(s.curve, s.n_c)
+    for a in range(n_a):
+        c = s.problem.ids[a]
+        s.curve[c] = s.problem.impulse[a]
+        slides = s.free[c] == 0 and rubs(s, c)
+        s.rows.share[s.n_j + c] = -s.direction[c] * s.mu[c] if slides else 0.0
+        s.rows.either[s.n_j + c] = 0
+    unload(s.rows, s.curve, s.new_loaded, s.n_c)
+    for a in range(n_a):
+        s.problem.impulse[a] = s.curve[s.problem.ids[a]]

@@ -1,0 +1,7 @@
+cimport cython
+from lcpstep.events.rows.state cimport Rows
+from lcpstep.pointers cimport Doubles, Indices
+
+cdef void unload(Rows s, Doubles force, Indices loaded, Py_ssize_t n_c) noexcept nogil
+cdef bint shift(Rows s, Doubles force, Indices loaded, Py_ssize_t n_c) noexcept nogil
+cdef Py_ssize_t spread(Rows s, Py_ssize_t c, Doubles force) noexcept nogil
