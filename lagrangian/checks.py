@@ -160,6 +160,14 @@ def function(name: str, value: Any, of: str) -> None:
         raise TypeError(f"{name}: expected a function of {of}, got {value!r}")
 
 
+def callbacks(of: Any, needed: tuple[str, ...], optional: tuple[str, ...]) -> None:
+    """ValueError for an attribute that is no function, though it is needed, or given."""
+    for name in needed + optional:
+        f = getattr(of, name)
+        if not callable(f) and (name in needed or f is not None):
+            raise ValueError(f"{name}: expected a function f(t, q, v, p, out), got {f!r}")
+
+
 def has(name: str, value: Any, attribute: str, what: str) -> None:
     """TypeError for an object without what is asked of it; `what` it was expected to be, in words."""
     if not hasattr(value, attribute):

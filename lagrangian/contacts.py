@@ -46,6 +46,7 @@ class LinearContacts(Pickled):
     friction: Coulomb | None = None
 
     def __post_init__(self) -> None:
+        checks.callbacks(self, (), ("motion",))
         read = sparse.matrix if self.sparse else checks.matrix
         object.__setattr__(self, "G", read("G", self.G))
         empty = sparse.empty_rows(self.G) if self.sparse else np.flatnonzero(~np.any(self.G, axis=1))
@@ -129,6 +130,7 @@ class Contacts(Pickled):
         if self.friction is not None:
             checks.instance("friction", self.friction, Coulomb)
             object.__setattr__(self, "friction", self.friction.fitted(self.n_c))
+        checks.callbacks(self, ("gap", "jacobian"), ("gap_t", "bias"))
 
     def state(self, t: float, q: Array, v: Array, p: Array) -> tuple[Array, Array]:
         """Gaps g [m] and gap velocities u [m/s], each (n_c,)."""

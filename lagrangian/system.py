@@ -94,6 +94,7 @@ class LinearSystem(Pickled):
     frame: Callback | None = None
 
     def __post_init__(self) -> None:
+        checks.callbacks(self, (), ("frame",))
         if any(map(sparse.is_sparse, (self.M, self.C, self.K))):
             self._keep_sparse()
         else:
@@ -168,8 +169,7 @@ class System(Pickled):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "n_q", checks.count("n_q", self.n_q))
-        if not callable(self.force):
-            raise ValueError(f"force: expected a function f(t, q, v, p, out), got {self.force!r}")
+        checks.callbacks(self, ("force",), ("force_q", "force_v", "potential"))
         if not callable(self.mass):
             M = checks.array("mass", self.mass, (self.n_q, self.n_q))
             object.__setattr__(self, "mass", checks.mass_matrix("mass", M))
