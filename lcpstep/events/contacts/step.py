@@ -21,7 +21,7 @@ if not cython.compiled:
     from lcpstep.events.contacts.parting import part_before
     from lcpstep.events.contacts.passing import take_over
     from lcpstep.events.contacts.state import GUARDS, Rubbing
-    from lcpstep.events.contacts.surfaces import find_touching, lift
+    from lcpstep.events.contacts.surfaces import find_coming, find_touching, lift
     from lcpstep.events.contacts.switching import reach_guard, watch
     from lcpstep.events.rows.jumps import breaks
     from lcpstep.kernels.record import Record
@@ -215,6 +215,7 @@ def look_ahead(s: Rubbing, h: float) -> int:
 def meet(s: Rubbing, c: int) -> int:
     """Contact c has come to its surface; a status, for that may be there no more."""
     find_touching(s)
+    find_coming(s, c)
     if not lift(s, c):
         s.culprit = c
         return NO_SURFACE

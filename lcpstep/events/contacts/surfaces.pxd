@@ -15,5 +15,6 @@ cdef double nearly(Rubbing s, Py_ssize_t c, double share) noexcept nogil
 @cython.locals(still=bint)
 cdef void find_closed(Rubbing s) noexcept nogil
 cdef void find_touching(Rubbing s) noexcept nogil
+cdef void find_coming(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef bint contradict(Rubbing s) noexcept nogil
 cdef bint come_apart(Rubbing s) noexcept nogil

@@ -19,7 +19,7 @@ if not cython.compiled:
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gap_rates, gaps
     from lcpstep.kernels.vectors import clear, copy, largest, product
-    from lcpstep.pointers import Doubles, abs, after
+    from lcpstep.pointers import Doubles, abs, after, min
 
 FREE = 1e-9  # relative: what a row can move of itself while others are held, or it depends on them
 TOGETHER = 1e-3  # of the tolerance of a gap
@@ -145,3 +145,16 @@ def find_touching(s: Rubbing) -> None:
     share = share_left(s)
     for c in range(s.n_c):
         s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= nearly(s, c, share) else 0
+
+
+def find_coming(s: Rubbing, c: int) -> None:
+    """Mark those too that close before it can be told when contact c, which has come to its surface, has done so.
+
+    A slow one crosses in long what its gap is known to: a corner that it is part of is an impact of all its walls.
+    """
+    u, share = s.velocity[s.n_j + c], share_left(s)
+    moment = nearly(s, c, share) / -u if u < 0.0 else 0.0
+    for d in range(s.n_c):
+        way = min(-s.velocity[s.n_j + d] * moment, share * gap_tolerance(s, d))
+        if s.gap[s.n_j + d] <= way:
+            s.touches[d] = 1
