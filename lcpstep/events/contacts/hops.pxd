@@ -22,6 +22,6 @@ cdef double change_of_bend(Rubbing s, Py_ssize_t c, double tau) noexcept nogil
 cdef double eighth_power(double d0, double d1, double d2, double d3, double most) noexcept nogil
 @cython.locals(first=Py_ssize_t)
 cdef Py_ssize_t first_landing(Rubbing s) noexcept nogil
-@cython.locals(f=double, _=bint)
+@cython.locals(f=double, _=bint, rises=bint)
 cdef void interrupt(Rubbing s, Py_ssize_t g, double tau) noexcept nogil
 cdef void carry(Rubbing s) noexcept nogil

@@ -209,7 +209,8 @@ def interrupt(s: Rubbing, g: int, tau: float) -> None:
         return
     for c in range(s.n_c):
         s.carried[c] = 0
-        if s.lands[c] == NEVER or (c != g and s.lands[c] > tau and is_low(s, c, tau)):
+        rises = s.hops[c] == 1 and s.bend[c] >= 0.0
+        if s.lands[c] == NEVER or (c != g and (rises or s.lands[c] > tau) and is_low(s, c, tau)):
             f, s.speed[c], _ = follow(s, c, tau)
             s.height[c] += f * tau
             s.carried[c] = 1 if s.height[c] > 0.0 else 0
