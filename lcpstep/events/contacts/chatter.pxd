@@ -14,6 +14,8 @@ cdef double time_left(Rubbing s, Py_ssize_t c, double t) noexcept nogil
 cdef double later(Rubbing s, Py_ssize_t c, double t, double T) noexcept nogil
 @cython.locals(passed_on=bint)
 cdef bint interrupted(Rubbing s, Py_ssize_t c, double T) noexcept nogil
+@cython.locals(passed_on=bint, slip=double, stops=bint)
+cdef bint stops_others(Rubbing s, Py_ssize_t c, double T) noexcept nogil
 cdef double gap_of(Rubbing s, Py_ssize_t d) noexcept nogil
 @cython.locals(rubbed=bint)
 cdef bint meets(Rubbing s, Py_ssize_t c, Py_ssize_t k) noexcept nogil

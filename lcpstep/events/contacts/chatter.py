@@ -2,11 +2,12 @@
 
 Hops under a pressing acceleration alpha accumulate after T = 2 u / (|alpha| (1 - r)); they are left out when no
 higher than the tolerance, and when nothing else happens before T to what the contact is connected with: closed, it
-answers another impact in another way than in flight, and its own may throw a contact off that rests. Closing takes
-the speed u, with the friction that belongs to it, by an impulse that the contact force up to T pays for. Hops as slow
-as the tolerance are left out too, elastic ones as well, and impacts of contacts that nothing presses (inelastic
-collapse) when they have both a speed and a way below it, together with those of the contacts that they alternate
-with: one that struck another at rest would leave it, and nothing would bring it back before the next blow.
+answers another impact in another way than in flight, its own may throw a contact off that rests, and one that slides
+may stop between them. Closing takes the speed u, with the friction that belongs to it, by an impulse that the contact
+force up to T pays for. Hops as slow as the tolerance are left out too, elastic ones as well, and impacts of contacts
+that nothing presses (inelastic collapse) when they have both a speed and a way below it, together with those of the
+contacts that they alternate with: one that struck another at rest would leave it, and nothing would bring it back
+before the next blow.
 Source: A. Nordmark, P. Piiroinen, Simulation and stability analysis of impacting systems with complete chattering,
 Nonlinear Dynamics 58 (2009).
 """
@@ -18,16 +19,17 @@ import cython
 from lcpstep.events.contacts.codes import ACCUMULATION, OPEN, SLIDES
 
 if not cython.compiled:
-    from lcpstep.events.contacts.closing import close
+    from lcpstep.events.contacts.closing import close, mode_closed
     from lcpstep.events.contacts.equations import (
         gap_tolerance,
         measure,
         rounding_of_gap,
         rubs,
+        sliding,
         speed_tolerance,
     )
     from lcpstep.events.contacts.held import accelerate_as_held, hold_modes, know_rows
-    from lcpstep.events.contacts.impact import find_free
+    from lcpstep.events.contacts.impact import find_free, still
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.rows.held import constrain, solve_held
     from lcpstep.kernels.clock import NOISE
@@ -103,7 +105,7 @@ def time_left(s: Rubbing, c: int, t: float) -> float:
     T = accumulation(u, alpha, r)
     if t + T > min(s.clock.high, s.t_end):
         return -1.0
-    if interrupted(s, c, T):
+    if interrupted(s, c, T) or stops_others(s, c, T):
         # of hops lower than the rounding of what others are lifted by none is left to be told
         return 0.0 if u * u <= -2.0 * alpha * rounding_of_gap(s, c) else -1.0
     change = abs(later(s, c, t, T) - alpha)
@@ -133,6 +135,22 @@ def interrupted(s: Rubbing, c: int, T: float) -> bool:
         if d != c and s.mode[d] == OPEN and (passed_on or meets(s, c, s.n_j + d)):
             g, u = gap_of(s, d), s.velocity[s.n_j + d]
             if (g > 0.0 or u > s.terms[d]) and first_zero(g, u, 0.5 * s.curve[d]) < T:
+                return True
+    return False
+
+
+def stops_others(s: Rubbing, c: int, T: float) -> bool:
+    """Whether a contact that impacts connect with contact c, and that slides, comes to rest within the time T.
+
+    Each impact may set it in motion again: it has less friction than one that slides on. Not where the next one would
+    leave it with sliding that cannot be told from none: stopped by that, it would feed the hops.
+    """
+    passed_on = passes_on(s, c)
+    for d in range(s.n_c):
+        k, slip = s.n_j + s.n_c + d, sliding(s, d)
+        if d != c and s.mode[d] == SLIDES and rubs(s, d) and (passed_on or meets(s, c, k)):
+            stops = slip * (slip + T * (product(s.R, s.a, k, s.n_q) + s.bias[k])) < 0.0
+            if stops and s.model.restitution[c] * abs(slip) > still(s, k):
                 return True
     return False
 
@@ -200,7 +218,7 @@ def disturbs(s: Rubbing) -> bool:
     """
     for c in range(s.n_c):
         s.tried[c] = s.mode[c]
-        s.mode[c] = SLIDES if s.left[c] >= 0.0 else s.mode[c]
+        s.mode[c] = mode_closed(s, c) if s.left[c] >= 0.0 else s.mode[c]
     found = let_go_pulling(s) and (throws_off(s) or drives_others(s))
     for c in range(s.n_c):
         s.mode[c] = s.tried[c]

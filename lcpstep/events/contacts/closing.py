@@ -27,7 +27,7 @@ def close(s: Rubbing, c: int) -> None:
     i = s.n_j + s.n_c + c
     slip, rough = sliding(s, c), rubs(s, c)
     s.loaded[c], s.direction[c] = 1, 1.0 if slip >= 0.0 else -1.0
-    s.mode[c] = SLIDES if not rough or abs(slip) > still(s, i) else STICKS
+    s.mode[c] = mode_closed(s, c)
     if s.mode[c] == SLIDES and rough and not slides_on(s, i, slip):
         s.mode[c] = STICKS
     if not hold_modes(s):  # sliding on would take the others' forces away: in a wedge all come to rest
@@ -42,6 +42,12 @@ def close(s: Rubbing, c: int) -> None:
     put_on_account(s)
     measure_velocities(s, s.v)
     find_free(s)
+
+
+def mode_closed(s: Rubbing, c: int) -> int:
+    """The mode in which contact c is closed: it slides on, if it does."""
+    i = s.n_j + s.n_c + c
+    return SLIDES if not rubs(s, c) or abs(sliding(s, c)) > still(s, i) else STICKS
 
 
 def slides_on(s: Rubbing, i: int, slip: float) -> bool:
