@@ -3,7 +3,7 @@ from lcpstep.events.contacts.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
-cdef Py_ssize_t SETTLE, JUMP, LEANS, OBEY, OPEN, STICKS, SWITCH, DONE, NOT_FINITE, NO_FORCES, NO_SURFACE, PAINLEVE_INCONSISTENT
+cdef Py_ssize_t SETTLE, JUMP, LEANS, OBEY, OPEN, SLIDES, STICKS, SWITCH, DONE, NOT_FINITE, NO_FORCES, NO_SURFACE, PAINLEVE_INCONSISTENT
 cdef double EDGE, LOOK_AHEAD, FURTHER, FARTHEST, LONGEST
 
 cdef Py_ssize_t step(Rubbing s, Record record, Tally tally) noexcept nogil
@@ -25,6 +25,8 @@ cdef bint differ(Rubbing s) noexcept nogil
 cdef Py_ssize_t look_ahead(Rubbing s, double h) noexcept nogil
 cdef Py_ssize_t meet(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void stop(Rubbing s, Py_ssize_t c) noexcept nogil
+@cython.locals(lies=bint)
+cdef void land_with(Rubbing s) noexcept nogil
 cdef void stop_with(Rubbing s, Py_ssize_t c) noexcept nogil
 @cython.locals(rests=bint)
 cdef void find_standing(Rubbing s) noexcept nogil

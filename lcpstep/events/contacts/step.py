@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import EDGE, JUMP, LEANS, OBEY, OPEN, SETTLE, STICKS, SWITCH
+from lcpstep.events.contacts.codes import EDGE, JUMP, LEANS, OBEY, OPEN, SETTLE, SLIDES, STICKS, SWITCH
 from lcpstep.events.ends import NO_FORCES, NO_SURFACE
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import measure, rubs, sliding
+    from lcpstep.events.contacts.equations import measure, rounding_of_gap, rubs, sliding
     from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
     from lcpstep.events.contacts.held import hold_modes
     from lcpstep.events.contacts.hops import carry, find_landings, interrupt, shortest_hop
@@ -229,10 +229,23 @@ def meet(s: Rubbing, c: int) -> int:
 
 def stop(s: Rubbing, c: int) -> None:
     """The sliding velocity of contact c is zero."""
+    land_with(s)
     find_standing(s)
     s.free[c] = 1
     stop_with(s, c)
     s.next = SETTLE
+
+
+def land_with(s: Rubbing) -> None:
+    """Close the contacts that a stop has left with neither a gap nor a speed, along it or not, that can be told.
+
+    On its way down in a hop that rounding hides, one would fall on until the gap tells, and strike that much faster.
+    """
+    for d in range(s.n_c):
+        i = s.n_j + d
+        lies = s.mode[d] == OPEN and s.gap[i] <= rounding_of_gap(s, d)
+        if lies and abs(s.velocity[i]) <= s.terms[d] and abs(sliding(s, d)) <= still(s, i + s.n_c):
+            s.mode[d] = SLIDES
 
 
 def stop_with(s: Rubbing, c: int) -> None:
