@@ -8,6 +8,8 @@ cdef double CHECKED
 
 @cython.locals(some=bint)
 cdef bint close_small(Rubbing s, Record record, Tally tally, double t) noexcept nogil
+@cython.locals(pull=double, most=double)
+cdef bint rests(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void join(Rubbing s) noexcept nogil
 @cython.locals(slow=bint, low=bint)
 cdef double time_left(Rubbing s, Py_ssize_t c, double t) noexcept nogil

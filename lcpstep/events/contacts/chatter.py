@@ -19,6 +19,8 @@ import cython
 from lcpstep.events.contacts.codes import ACCUMULATION, OPEN, SLIDES
 
 if not cython.compiled:
+    from math import sqrt
+
     from lcpstep.events.contacts.closing import close, mode_closed
     from lcpstep.events.contacts.equations import (
         gap_tolerance,
@@ -31,6 +33,7 @@ if not cython.compiled:
     from lcpstep.events.contacts.held import accelerate_as_held, hold_modes, know_rows
     from lcpstep.events.contacts.impact import find_free, still
     from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.equations import least_effect
     from lcpstep.events.rows.held import constrain, solve_held
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.quadratic import accumulation, first_zero
@@ -70,9 +73,24 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
             s.chatter_end[c] = t + s.left[c]
             if abs(u) > s.terms[c]:
                 s.clock.log(record, tally, s.chatter_end[c], c, ACCUMULATION, -abs(u), 0.0, p)
-            close(s, c)
+            close(s, c, rests(s, c))
     join(s)
     return True
+
+
+def rests(s: Rubbing, c: int) -> bool:
+    """Whether contact c slides by no more than forces make within hops that are left out: that goes with these.
+
+    It matters where what slides has less friction than what sticks, and would go on. Not where others hop on.
+    """
+    i = s.n_j + s.n_c + c
+    if not (rubs(s, c) and s.mu_s[c] > s.mu[c]):
+        return False
+    pull = abs(product(s.R, s.a, i, s.n_q) + s.bias[i])
+    most = sqrt(2.0 * pull * least_effect(s.rows, i, s.q))
+    if abs(sliding(s, c)) > max(most, still(s, i)):
+        return False
+    return pull == 0.0 or not interrupted(s, c, most / pull)
 
 
 def join(s: Rubbing) -> None:

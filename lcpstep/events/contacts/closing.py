@@ -22,12 +22,12 @@ if not cython.compiled:
     from lcpstep.pointers import abs
 
 
-def close(s: Rubbing, c: int) -> None:
-    """Take the velocity of contact c, which slides on as before, unless that stops it."""
+def close(s: Rubbing, c: int, at_rest: bool) -> None:
+    """Take the velocity of contact c, which slides on as before, unless that stops it; or its sliding, too."""
     i = s.n_j + s.n_c + c
     slip, rough = sliding(s, c), rubs(s, c)
     s.loaded[c], s.direction[c] = 1, 1.0 if slip >= 0.0 else -1.0
-    s.mode[c] = mode_closed(s, c)
+    s.mode[c] = STICKS if at_rest else mode_closed(s, c)
     if s.mode[c] == SLIDES and rough and not slides_on(s, i, slip):
         s.mode[c] = STICKS
     if not hold_modes(s):  # sliding on would take the others' forces away: in a wedge all come to rest
@@ -37,7 +37,7 @@ def close(s: Rubbing, c: int) -> None:
     copy(s.account, s.impulse, s.n_r)
     copy(s.seen, s.v, s.n_q)
     stop_rows(s)
-    if leaves_cone(s, c):
+    if not at_rest and leaves_cone(s, c):
         take_back(s, c)
     put_on_account(s)
     measure_velocities(s, s.v)
