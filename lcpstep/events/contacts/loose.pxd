@@ -10,10 +10,8 @@ cdef void find_loose(Rubbing s) noexcept nogil
 cdef bint is_loose(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef void forget_strays(Rubbing s) noexcept nogil
 cdef void notice(Rubbing s, double place, double t) noexcept nogil
-@cython.locals(low=double, high=double)
-cdef void first_stray(Rubbing s, double h) noexcept nogil
+cdef bint first_stray(Rubbing s, double h, double low, double high) noexcept nogil
 cdef double first_beyond(Rubbing s, double low, double high, double h, double level) noexcept nogil
-cdef Py_ssize_t straying_at(Rubbing s, double place, double h, double level) noexcept nogil
 @cython.locals(mode=Py_ssize_t)
 cdef Py_ssize_t straying(Rubbing s, Doubles a, double level) noexcept nogil
 cdef bint strays(Rubbing s, Py_ssize_t i, Doubles a, double least) noexcept nogil

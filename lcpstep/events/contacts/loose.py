@@ -14,7 +14,6 @@ from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
     from lcpstep.events.contacts.equations import rubs
-    from lcpstep.events.contacts.held import know_rows
     from lcpstep.events.contacts.state import GUARDS, Rubbing
     from lcpstep.events.rows.equations import renew_biases, size_of_acceleration
     from lcpstep.events.rows.held import is_held
@@ -70,20 +69,21 @@ def notice(s: Rubbing, place: float, t: float) -> None:
         s.shown = place
 
 
-def first_stray(s: Rubbing, h: float) -> None:
-    """The first row that leaves its rest within the step of size h, before the guard found, in its place.
+def first_stray(s: Rubbing, h: float, low: float, high: float) -> bool:
+    """The first row that leaves its rest between two fractions of the step of size h; whether there is one.
 
-    As a guard of its contact; when goes into `found`, as of other guards, and how much later it shows into `delay`.
+    In the place of the guard found, as a guard of its contact; when goes into `found`, as of other guards, and how
+    much later it shows into `delay`.
     """
-    low, high = s.kept_to, min(s.shown, s.found)
-    c = straying_at(s, high, h, DRIFT) if low < high else -1
+    c = s.straying_at(high, h, DRIFT) if low < high else -1
     if c < 0:
-        return
+        return False
     high = first_beyond(s, low, high, h, DRIFT)
     place = first_beyond(s, 0.0, high, h, NOISE)
     s.found = max(0.0, place - EARLIER * (high - place))
     s.guard, s.risen, s.delay = GUARDS * c, False, high - s.found
     s.stray[c] = MORE * max(1.0, s.stray[c])
+    return True
 
 
 def first_beyond(s: Rubbing, low: float, high: float, h: float, level: float) -> float:
@@ -91,20 +91,11 @@ def first_beyond(s: Rubbing, low: float, high: float, h: float, level: float) ->
     a, b = low, high
     while b - a > max(NEAR * min(b - low, high - a), RESOLUTION):
         middle = 0.5 * (a + b)
-        if straying_at(s, middle, h, level) >= 0:
+        if s.straying_at(middle, h, level) >= 0:
             b = middle
         else:
             a = middle
     return b
-
-
-def straying_at(s: Rubbing, place: float, h: float, level: float) -> int:
-    """`straying` at that fraction of the step of size h; -1 where a state is not finite."""
-    t = s.clock.t0 + place * h
-    s.at(place, s.seen)
-    if not know_rows(s, t, s.seen, s.dy):
-        return -1
-    return straying(s, after(s.dy, s.n_q), level)
 
 
 def straying(s: Rubbing, a: Doubles, level: float) -> int:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.contacts.held import right_hand_side
+    from lcpstep.events.contacts.held import know_rows, right_hand_side
+    from lcpstep.events.contacts.loose import straying
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.contacts.step import step
     from lcpstep.events.rows.held import size_of_pushes
@@ -32,3 +33,10 @@ class Smooth(Rubbing):
     def proceed(self, record: Record, tally: Tally) -> int:
         """A step that meets the tolerance, up to the first event within it; a status."""
         return step(self, record, tally)
+
+    def straying_at(self, place: float, h: float, level: float) -> int:
+        """The first contact that has a row leave its rest at that fraction of the step, by its dense output; or -1."""
+        self.at(place, self.seen)
+        if not know_rows(self, self.clock.t0 + place * h, self.seen, self.dy):
+            return -1
+        return straying(self, after(self.dy, self.n_q), level)

@@ -42,3 +42,4 @@ cdef class Rubbing(RungeKutta):
     cdef Doubles value, band, samples
     cdef Indices armed
     cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil
+    cdef Py_ssize_t straying_at(self, double place, double h, double level) noexcept nogil

@@ -213,6 +213,10 @@ class Rubbing(RungeKutta):
         """Go on up to the first event, no further than a step; a status. Every way to step has its own."""
         return NOT_FINITE
 
+    def straying_at(self, place: float, h: float, level: float) -> int:
+        """`loose.straying` at that fraction of the step of size h; -1 where a state is not finite. As `proceed`."""
+        return -1
+
     def closed_ones(self) -> list[int]:
         """The contacts that are closed."""
         return [c for c in range(self.n_c) if self.mode[c] != 0]

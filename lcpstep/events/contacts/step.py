@@ -77,7 +77,7 @@ def find(s: Rubbing, h: float) -> int:
     if first_event(s, h) == UNKNOWN:
         return NOT_FINITE
     if s.shown <= 1.0:
-        first_stray(s, h)
+        first_stray(s, h, s.kept_to, min(s.shown, s.found))
     return watch(s, h, 1.0 if s.guard < 0 else s.found) if s.watched else DONE
 
 

@@ -11,6 +11,7 @@ if not cython.compiled:
     from lcpstep.events.contacts.held import count_impulses, hold_modes
     from lcpstep.events.contacts.impact import still
     from lcpstep.events.contacts.keep import keep, keep_event
+    from lcpstep.events.contacts.loose import first_stray
     from lcpstep.events.contacts.modes import decide, undecided
     from lcpstep.events.contacts.moments import of_sliding
     from lcpstep.events.contacts.state import GUARDS
@@ -30,9 +31,9 @@ if not cython.compiled:
         locate,
         note_arrival,
         note_base,
+        read_guards,
     )
     from lcpstep.stepping.rubbing.paced import pace
-    from lcpstep.stepping.rubbing.strays import find_stray
     from lcpstep.stepping.rubbing.strides import Strides
 
 # Of a step: where the forces after a release, or a slip, are looked at, and how much further each time that nothing
@@ -100,8 +101,10 @@ def search(s: Strides, t: float, h: float) -> int:
             s.guard = TORN
             return DONE
         s.tau = locate(s, s.guard, h) if first_event(s, h) >= 0 else NOWHERE
-        if s.loose > 0:
-            find_stray(s, h)
+        if s.loose > 0 and first_stray(s, h, 0.0, 1.0 if s.tau == NOWHERE else s.tau / h):
+            s.tau = s.found * h
+            if s.tau > 0.0 and s.step(t, s.tau):
+                read_guards(s, t + s.tau, s.y_new)
         if s.tau != NOWHERE and turns_at_once(s, s.guard):
             s.clock.break_at(t + s.tau)
             s.guard = TORN
