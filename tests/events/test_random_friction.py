@@ -109,3 +109,17 @@ def test_all_answers_of_a_problem_are_found():
     assert len(answers(W, np.array([-1.0, 0.1]), np.array([0.5]), [0.0])) == 1
     W = np.array([[1.0, -2.0], [-2.0, 5.0]])  # pressed by its own friction
     assert len(answers(W, np.array([0.1, 1.0]), np.array([0.8]), [-1.0])) == 2
+
+
+@pytest.mark.parametrize(
+    ("law", "seed"), [("moreau", 4), ("moreau", 6), ("moreau", 40), ("stronge", 16), ("stronge", 106)]
+)
+@pytest.mark.parametrize("keep", ["impacts", 50, "ends"])
+def test_what_is_kept_changes_no_digit_of_a_motion(law, seed, keep):
+    scene = draw(seed, law)
+    whole = simulate(scene, EventDriven())
+    other = simulate(scene, EventDriven(), keep=list(scene.t_span) if keep == "ends" else keep)
+    for name in ("time", "contact", "before", "after", "impulse", "kind"):
+        np.testing.assert_array_equal(other.impacts[name], whole.impacts[name])
+    np.testing.assert_array_equal(other.q[-1], whole.q[-1])
+    np.testing.assert_array_equal(other.v[-1], whole.v[-1])

@@ -12,7 +12,7 @@ from lcpstep.events.contacts.codes import OPEN, SLIDES, STICKS
 
 if not cython.compiled:
     from lcpstep.events.contacts.equations import measure_velocities, of_tangent, rubs, sliding
-    from lcpstep.events.contacts.held import hold_modes, stop_rows
+    from lcpstep.events.contacts.held import hold_modes, take_velocities
     from lcpstep.events.contacts.impact import find_free, still
     from lcpstep.events.contacts.keep import put_on_account
     from lcpstep.events.contacts.state import Rubbing
@@ -34,9 +34,8 @@ def close(s: Rubbing, c: int, at_rest: bool) -> None:
         for d in range(s.n_c):
             s.mode[d] = STICKS if s.mode[d] != OPEN and rubs(s, d) else s.mode[d]
         hold_modes(s)
-    copy(s.account, s.impulse, s.n_r)
     copy(s.seen, s.v, s.n_q)
-    stop_rows(s)
+    take_velocities(s)
     if not at_rest and leaves_cone(s, c):
         take_back(s, c)
     put_on_account(s)
@@ -61,7 +60,10 @@ def slides_on(s: Rubbing, i: int, slip: float) -> bool:
 
 def leaves_cone(s: Rubbing, c: int) -> bool:
     """Whether contact c, just stopped, has more friction at this instant than belongs to what its normal has had."""
-    normal, friction = s.impulse[c] - s.instant[c], of_tangent(s, s.impulse, c) - of_tangent(s, s.instant, c)
+    i, friction = s.n_j + c, of_tangent(s, s.instant, c)
+    normal = s.instant[c] + s.multiplier[i]
+    if s.n_t > 0:
+        friction += s.multiplier[i + s.n_c]
     return normal < 0.0 or abs(friction) > (1.0 + NOISE) * s.mu_s[c] * normal
 
 
@@ -71,13 +73,12 @@ def take_back(s: Rubbing, c: int) -> None:
     An impact whose restitution turns the sliding has other friction than the sliding that it leaves; Moreau's law is
     plastic then. A friction beyond the cone would do work.
     """
-    normal, friction = s.account[c] - s.instant[c], of_tangent(s, s.account, c) - of_tangent(s, s.instant, c)
+    normal, friction = s.instant[c], of_tangent(s, s.instant, c)
     if normal <= 0.0:
         return
     mode, direction, s.mode[c] = s.mode[c], s.direction[c], SLIDES
     s.direction[c] = -friction / (s.mu[c] * normal) if s.mu[c] > 0.0 else direction
     if hold_modes(s):
         copy(s.v, s.seen, s.n_q)
-        copy(s.impulse, s.account, s.n_r)
-        stop_rows(s)
+        take_velocities(s)
     s.mode[c], s.direction[c] = mode, direction

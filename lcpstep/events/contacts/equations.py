@@ -160,4 +160,5 @@ def add_impulse(s: Rubbing, i: int, p: float) -> None:
     """Count an impulse of row i: contacts are kept first, then tangents and joints."""
     k = i - s.n_j if i >= s.n_j else s.n_c + s.n_t + i
     s.impulse[k] = s.impulse[k] + p
-    s.turn_impulse[k] = s.turn_impulse[k] + p  # of itself: differences would depend on what has been kept
+    # Of their own: differences would depend on what has been kept
+    s.turn_impulse[k], s.instant[k] = s.turn_impulse[k] + p, s.instant[k] + p

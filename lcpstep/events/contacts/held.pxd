@@ -17,4 +17,5 @@ cdef void accelerate(Rubbing s, double t, double* y, double* a) noexcept nogil
 cdef void map_forces(Rubbing s) noexcept nogil
 cdef void list_multipliers(Rubbing s) noexcept nogil
 cdef void stop_rows(Rubbing s) noexcept nogil
+cdef void take_velocities(Rubbing s) noexcept nogil
 cdef void count_impulses(Rubbing s, double* x) noexcept nogil

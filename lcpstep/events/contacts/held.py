@@ -200,10 +200,14 @@ def list_multipliers(s: Rubbing) -> None:
 
 def stop_rows(s: Rubbing) -> None:
     """Impulses on the rows held, sliding friction included, that take their velocities."""
-    copy(s.dv, s.v, s.n_q)
-    constrain(s.rows, s.dv, s.rate)
-    copy(s.v, s.dv, s.n_q)
+    constrain(s.rows, s.v, s.rate)
     count_impulses(s, s.rows.held)
+
+
+def take_velocities(s: Rubbing) -> None:
+    """The same, not counted, but by row into `multiplier`."""
+    constrain(s.rows, s.v, s.rate)
+    list_multipliers(s)
 
 
 def count_impulses(s: Rubbing, x: Doubles) -> None:

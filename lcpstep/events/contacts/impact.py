@@ -36,7 +36,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import FOR_EVER, looks_back
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear, copy
+    from lcpstep.kernels.vectors import clear
     from lcpstep.pointers import abs, after, inf, max, min
 
 ROUNDS = 100_000  # problems of impacts at one instant
@@ -209,7 +209,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     if record.full(4 * s.n_c + 4):
         return BUFFER_FULL
     hit, first = s.culprit, -1
-    copy(s.instant, s.impulse, s.n_r)
+    clear(s.instant, s.n_r)
     for c in range(s.n_c):
         s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
         s.free[c], s.touches[c] = 1, 1 if s.mode[c] != OPEN else 0
@@ -261,7 +261,7 @@ def still(s: Rubbing, i: int) -> float:
 def forget_terms(s: Rubbing) -> None:
     """A new instant: what rounding leaves of gap velocities is that of the velocities at hand."""
     s.rounds = 0
-    copy(s.instant, s.impulse, s.n_r)
+    clear(s.instant, s.n_r)
     clear(s.terms, 2 * s.n_c)
     for c in range(s.n_c):
         s.parting[c] = s.thrown[c] = 0

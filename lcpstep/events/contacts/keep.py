@@ -17,7 +17,7 @@ from lcpstep.events.contacts.codes import (
 )
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import of_tangent, rubs, sliding
+    from lcpstep.events.contacts.equations import add_impulse, of_tangent, rubs, sliding
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.record import Record
@@ -46,10 +46,11 @@ def pay(s: Rubbing, c: int) -> None:
 
 
 def put_on_account(s: Rubbing) -> None:
-    """Impulses since those in `account` belong to contacts that are closed from here on, not to this instant."""
+    """Impulses by row in `multiplier` belong to contacts that are closed from here on, not to this instant."""
+    for i in range(s.n_j):
+        add_impulse(s, i, s.multiplier[i])
     for i in range(s.n_c + s.n_t):
-        s.owed[i] = s.owed[i] + s.impulse[i] - s.account[i]
-        s.impulse[i] = s.account[i]
+        s.owed[i] = s.owed[i] + s.multiplier[s.n_j + i]
 
 
 def keep_event(s: Rubbing, record: Record, t: float) -> None:

@@ -37,7 +37,7 @@ def let_go(s: Rubbing, t: float) -> bool:
     landed = False
     for c in range(s.n_c):
         new = s.mode[c] != OPEN and s.was_mode[c] == OPEN
-        landed = landed or (new and s.impulse[c] > s.instant[c])
+        landed = landed or (new and s.instant[c] > 0.0)
     if not landed:
         return True
     if not measure(s, t, s.y):

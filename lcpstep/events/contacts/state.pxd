@@ -30,7 +30,7 @@ cdef class Rubbing(RungeKutta):
     cdef double found, slope, kept_to, shown, delay
     cdef bint constant, plain, mapped, risen
     cdef Doubles nodes, weights, q, v, a_free, a, force, dy, seen, dv, R, MR, W, S
-    cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, account, instant, paces
+    cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, instant, paces
     cdef Doubles turn_velocity, turn_impulse, shifted_rate, counted, total, loads, doubt, effect
     cdef Doubles effects, mu, mu_s, slip, tangential, direction, was_direction, new_direction, terms, before
     cdef Doubles owed, lands, height, rise, bend, speed, struck, since, chatter_end, left, curve, stray

@@ -84,7 +84,7 @@ class Rubbing(RungeKutta):
     turn_velocity, turn_impulse : (n_r,)   velocities some impacts ago;  `impulse` since then, whatever is kept
     before : (n_c,)              gap velocities before the impact at hand, 0 of what is closed
     doubt : (n_r,)               accelerations of rows that are not known where modes are sought, see `balance`
-    account, instant : (n_r,)    `impulse` before the end of chattering adds to it, see `owed`; before this instant
+    instant : (n_r,)             `impulse` since this instant has begun, whatever is kept
     guard, found, slope          the guard that acts, when, and how fast it falls;  dv, seen, samples    scratch
     kept_to, shown, delay        up to when a row that is not held has stayed at rest, where it has left that, both as
         fractions of the step, and how much later than it is `found` that is
@@ -130,7 +130,7 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(8 * n + (10 + ALL) * r + 1 + (n + r) ** 2)
+        self.table = np.zeros(8 * n + (9 + ALL) * r + 1 + (n + r) ** 2)
         self.q, self.v = self.y, after(self.y, n)
         self.a_free, self.force = self.rows.a_free, self.rows.force
         self.R, self.MR, self.W = self.rows.R, self.rows.MR, self.rows.D
@@ -143,8 +143,7 @@ class Rubbing(RungeKutta):
         self.gap = after(self.dv, 2 * n)
         self.velocity = after(self.gap, r)
         self.impulse = after(self.velocity, r)
-        self.account = after(self.impulse, r)
-        self.instant = after(self.account, r)
+        self.instant = after(self.impulse, r)
         self.paces, self.paced = after(self.instant, r), 0
         self.counted = after(self.paces, r + 1)
         self.total = after(self.counted, r)
