@@ -2,7 +2,7 @@ cimport cython
 from lcpstep.kernels.model cimport Model
 from lcpstep.maps.answers cimport Answers
 from lcpstep.pointers cimport Doubles
-from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.moving cimport Plan
 
 
 @cython.final

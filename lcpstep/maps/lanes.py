@@ -19,7 +19,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy
     from lcpstep.maps.answers import Answers
     from lcpstep.pointers import Doubles, max
-    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.moving import Plan
 
 
 class Lanes:
@@ -30,7 +30,7 @@ class Lanes:
     slack               a predicted gap this small is closed
     free                velocities without impulses
     closed              for how many steps the contact has been closed
-    h, theta, A_f, A_q, A_v, A_g, W     of the step, see `lcpstep.stepping.theta_method.plan`
+    h, theta, A_f, A_q, A_v, A_g, W     of the step, see `lcpstep.stepping.theta_method.moving`
     nobody, force : (1,)    a state for functions that depend on time alone; what they give
 
     Parameters

@@ -16,9 +16,8 @@ from lcpstep.model import models
 from lcpstep.pace import Pace
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.stepping.moreau_run import plan, rows
-from lcpstep.stepping.start import start_side
-from lcpstep.stepping.steps import RESTING, divided
-from lcpstep.stepping.theta_method.plan import Plan
+from lcpstep.stepping.steps import RESTING, divided, start_side
+from lcpstep.stepping.theta_method.moving import Plan
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]

@@ -1,7 +1,6 @@
 cimport cython
 from lcpstep.pointers cimport Doubles, Indices
-from lcpstep.stepping.theta_method.moving cimport Rows, State
-from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.moving cimport Plan, Rows, State
 
 cdef Py_ssize_t ONE, FIRST, SECOND
 cdef double SHARED, STICKS, SAME

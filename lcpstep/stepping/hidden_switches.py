@@ -15,8 +15,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import add, clear, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, indices_after, max, min
     from lcpstep.stepping.hidden_forces import gives_out, hidden, late
-    from lcpstep.stepping.theta_method.moving import Rows, State
-    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
     from lcpstep.stepping.theta_method.row_impulses import NO_APPROACH, size_of_rate
 
 ONE, FIRST, SECOND = range(3)  # the step, its halves

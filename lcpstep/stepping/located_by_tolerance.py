@@ -63,9 +63,8 @@ class Attempts(Parts):
         self.full = self.two.code == BUFFER_FULL and self.event + self.row > 0
         if not self.full:
             self.weigh(end - start)
-        self.failed = (
-            self.failed or not agreed
-        )  # about the time of the event: the motion is back at its start
+        # About the time of the event: the motion is back at its start
+        self.failed = self.failed or not agreed
         self.cut = inf if entire and self.two.code == FINISHED else self.w.sigma
         return REACHED if self.two.good() else self.two.code
 
@@ -144,9 +143,8 @@ class Attempts(Parts):
         furthest, first = self.two.off, after(self.record.events, self.event * COLUMNS)
         if self.saved.closed_now == 0 or self.record.event == self.event:
             return furthest
-        gaps(
-            self.m, first[0], self.two.q, self.two.v, self.w.gap_try
-        )  # all that has happened came at one instant
+        # All that has happened came at one instant
+        gaps(self.m, first[0], self.two.q, self.two.v, self.w.gap_try)
         for k in range(self.record.event - self.event):
             c, steep = whole(first[k * COLUMNS + 1]), 0.0
             if first[k * COLUMNS + 5] == IMPACT:

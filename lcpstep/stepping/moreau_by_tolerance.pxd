@@ -5,8 +5,7 @@ from lcpstep.pointers cimport Doubles, Indices
 from lcpstep.stepping.hidden_edges cimport Edges
 from lcpstep.stepping.hidden_switches cimport Switches
 from lcpstep.stepping.step_control cimport Control
-from lcpstep.stepping.theta_method.moving cimport Rows, State
-from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.moving cimport Plan, Rows, State
 from lcpstep.stepping.theta_method.theta_loop cimport Steps
 
 cdef Py_ssize_t LEVELS, OWN, FINISHED, BUFFER_FULL

@@ -21,13 +21,11 @@ from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.extent import is_stiff, places
 from lcpstep.stepping.moreau_by_tolerance import Attempts
-from lcpstep.stepping.start import start_side
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import RESTING, inverse, number
+from lcpstep.stepping.steps import RESTING, inverse, number, start_side
 from lcpstep.stepping.theta_method import theta_loop as loop
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS, NEED_LCP
-from lcpstep.stepping.theta_method.moving import Rows, State
-from lcpstep.stepping.theta_method.plan import Plan
+from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.responses import constant_rows
 from lcpstep.trajectory import Counts, Status
 

@@ -27,9 +27,8 @@ from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
 from lcpstep.stepping.sparse_blows import Blows, forced, opens_and_closes
 from lcpstep.stepping.sparse_equations import Equations, Step
-from lcpstep.stepping.start import start_side
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, UNTOLD, largest
+from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, UNTOLD, largest, start_side
 from lcpstep.trajectory import Counts, Kind, Status
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""What all fixed steps agree on: when a span is a whole number of them, and which are too long or too short.
+"""What all steps agree on: when a span is a whole number of them, which are too long or too short, where they begin.
 
 Steps that are lost in the rounding of the times they are added to are refused: such a run would never end.
 """
@@ -6,11 +6,13 @@ Steps that are lost in the rounding of the times they are added to are refused: 
 from __future__ import annotations
 
 import functools
+import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lagrangian import Scene
 from lcpstep.errors import LcpStepError
 
 RESOLUTION = 2.0**-52
@@ -20,6 +22,8 @@ RESTING = 1e-13  # of the size of the scene: a gap this small is closed
 UNTOLD = 4.0 * RESOLUTION  # of a time: its rounding, in which an obstacle moves on under a body
 TURNS = 200  # blows in a step of `Moreau` for each of its contacts; more go on in the next one
 LEFT = 1e-6  # of the fastest approach: what is slower ends in a plastic blow
+# Relative: what rounding may make of the phase of a callback, and of the time of a corner, off which times are moved
+MARGIN = 2.0**-49
 
 
 def largest(*numbers: Any) -> float:
@@ -70,3 +74,20 @@ def divided(span: tuple[float, float], h: float) -> tuple[tuple[float, float, in
         last = start + whole * h
         found.append((end - last, last, whole, whole + 1))
     return tuple(found)
+
+
+def start_side(scene: Scene, t: float) -> float:
+    """The time t, or, where that is a corner of the scene to rounding, the next one that callbacks tell from it.
+
+    They are asked for the side of the corner on which the motion goes on.
+    """
+    period = scene.period
+    periodic = math.isfinite(period)
+    margin = MARGIN * max(abs(t), period if periodic else scene.t_span[1] - scene.t_span[0])
+    for corner in np.asarray(scene.corners).tolist():
+        apart = t - corner
+        if periodic:
+            apart = (apart + 0.5 * period) % period - 0.5 * period
+        if abs(apart) <= margin:
+            return t + margin
+    return t

@@ -48,9 +48,8 @@ if not cython.compiled:
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
 LOOK_AHEAD, FURTHER = 1e-6, 10.0
-NO_TIME = (
-    2.0**-50
-)  # of the interval looked at: stretches of motion this short take no time, nor do roundings of it
+# Of the interval looked at: stretches of motion this short take no time, nor do roundings of it
+NO_TIME = 2.0**-50
 
 
 class Course(Events):

@@ -46,9 +46,8 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import abs, after, max
 
-LEANING = (
-    1e-12  # of accelerations that hang together: as much solving for the forces leaves of one that is none
-)
+# Of accelerations that hang together: as much solving for the forces leaves of one that is none
+LEANING = 1e-12
 
 
 def decide(s: Rubbing) -> int:

@@ -35,7 +35,7 @@ class Smooth(Rubbing):
         return step(self, record, tally)
 
     def straying_at(self, place: float, h: float, level: float) -> int:
-        """The first contact that has a row leave its rest at that fraction of the step, by its dense output; or -1."""
+        """The first contact of which a row has left its rest at that fraction of the step, or -1: by dense output."""
         self.at(place, self.seen)
         if not know_rows(self, self.clock.t0 + place * h, self.seen, self.dy):
             return -1

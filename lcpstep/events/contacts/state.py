@@ -26,9 +26,8 @@ if not cython.compiled:
     from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import after, indices_after, inf
 
-GUARDS = (
-    3  # of a contact: its gap or normal force; its sliding velocity, or the two edges of its friction cone
-)
+# Of a contact: its gap or normal force; its sliding velocity, or the two edges of its friction cone
+GUARDS = 3
 
 
 class Rubbing(RungeKutta):

@@ -10,6 +10,6 @@ contact_forces           of the contacts that rest; `switches` closes and opens 
 sequences, settle        how chattering ends; events without end
 race, glide              impacts of many bodies in free flight; steps without events
 joints, jointed          what joints do to a state, and to a step
-carried, led             coordinates of a moving frame; where the runs that a tolerance compares have led
+carried                  coordinates of a moving frame
 codes, times             codes of the loop; times to rounding
 """

@@ -15,13 +15,14 @@ if not cython.compiled:
     from lcpstep.kernels.linear import solve_factored
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.kernels.vectors import clear, copy
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
-    from lcpstep.stepping.pieces.jointed import answer_force, rate_left
+    from lcpstep.stepping.pieces.jointed import answer_contact, rate_left
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
     from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, keep_closed
+    from lcpstep.stepping.pieces.smooth import answer_forces
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import release, release_time, stick, turn
 
@@ -85,12 +86,7 @@ def answered(plan: Plan, w: Work, place: int) -> int:
     if not (plan.trapezoidal and plan.stiff):
         return INERTIA
     n, n_c, inverse = w.n_q, w.n_c, after(plan.A_inverse, place * w.n_q * w.n_q)
-    AG, WA = after(plan.AG, place * n_c * n), after(plan.WA, place * n_c * n_c)
-    for c in range(n_c):
-        for i in range(n):
-            AG[c * n + i] = product(inverse, after(w.G, c * n), i, n)
-        for d in range(n_c):
-            WA[d * n_c + c] = product(w.G, after(AG, c * n), d, n)
+    answer_forces(inverse, w.G, after(plan.AG, place * n_c * n), after(plan.WA, place * n_c * n_c), n, n_c)
     return place
 
 
@@ -215,7 +211,7 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
         if w.status[c] == CLOSED:
             w.chosen[n_k] = c
             w.z[n_k] = 0.5 * tau * w.force_now[c]
-            w.b[n_k] = rate_left(plan, w, c) if w.joined else product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+            w.b[n_k] = rate_left(plan, w, c)
             n_k += 1
     if n_k == 0:
         return True
@@ -230,13 +226,13 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
         w.impulse[c] += p
         w.pushed[c] += p
         if w.joined:
-            answer_force(w, c, p)
+            answer_contact(w, c, p, w.joints.piece)
         for i in range(w.n_q):
             w.v[i] += MG[c * w.n_q + i] * p
     for k in range(n_k):
         c = w.chosen[k]
         if w.p[c] == 0.0 and tau > 0.0:
-            u = rate_left(plan, w, c) if w.joined else product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+            u = rate_left(plan, w, c)
             if u > ROUNDING * speed_terms(plan, w, c):
                 lost = 2.0 * u / (tau * W[c * w.n_c + c])
                 force = w.force_now[c]

@@ -23,7 +23,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.impulses import strike, zero_speeds
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import speed_terms
-    from lcpstep.stepping.pieces.smooth import mobility, refactor, renew_forces, respond
+    from lcpstep.stepping.pieces.smooth import mobility, renew_forces, renew_mobility
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle, stick, turn
 
@@ -38,10 +38,8 @@ def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
             turn(m, plan, w, c, 0.0, False)
         idle(w)
         return FINISHED
-    if not plan.constant:
-        if not refactor(m, w, now):
-            return NOT_FINITE
-        respond(m, w)
+    if not renew_mobility(m, plan, w, now):
+        return NOT_FINITE
     n_s = strike(m, plan, w, record, c, now)
     if n_s <= 0:
         idle(w)

@@ -20,8 +20,8 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import add, clear, copy, distance, largest, product
     from lcpstep.pointers import Doubles, abs, after, max, min
-    from lcpstep.stepping.pieces.codes import CLOSED, JOINTS_FAILED, PROJECTION_FAILED, ROUNDING
-    from lcpstep.stepping.pieces.joints import bend, put, take, turn
+    from lcpstep.stepping.pieces.codes import CLOSED, PROJECTION_FAILED, ROUNDING
+    from lcpstep.stepping.pieces.joints import bend, put_on_joints, take, turn_onto_joints
     from lcpstep.stepping.pieces.magnitudes import speed_terms
     from lcpstep.stepping.pieces.state import Plan, Work
 
@@ -31,12 +31,6 @@ UNTOLD = 1e-9  # of the terms of its velocity: what is left of it where joints l
 ASTRAY = 1e6  # times what counts as closed: where a closed contact is not held
 
 # --- at one state ---------------------------------------------------------------------------------------------
-
-
-def put_on_joints(w: Work, t: float, slack: float, q: Doubles) -> None:
-    """The position q onto the joints."""
-    if not put(w.joints, w.M, t, q, w.v, slack):
-        w.joints.failed = PROJECTION_FAILED
 
 
 def stay_at_base(w: Work, t: float) -> None:
@@ -54,30 +48,18 @@ def meet_both(m: Model, w: Work, t: float, slack: float) -> None:
 
     Past a position in which normals of joints and contacts are parallel there may be none that meets both.
     """
-    put_on_joints(w, t, slack, w.q)
+    put_on_joints(w.joints, w.M, t, w.q, w.v, slack)
     gaps(m, t, w.q, w.v, w.gap_try)
     for c in range(w.n_c):
         if w.status[c] == CLOSED and not abs(w.gap_try[c]) <= ASTRAY * slack:
             w.joints.failed = PROJECTION_FAILED
 
 
-def settle_velocity(w: Work, t: float) -> None:
-    """A velocity within a piece, v_try, onto the joints at the position q."""
-    take(w.joints, w.M, t, w.q, w.v_try)
-    turn_onto_joints(w, w.v_try)
-
-
 def turn_with_joints(w: Work, t: float) -> None:
     """The velocity onto joints that begin to move otherwise at time t, and the impulses which that takes."""
     take(w.joints, w.M, t, w.q, w.v)
-    turn_onto_joints(w, w.v)
+    turn_onto_joints(w.joints, w.v)
     add(after(w.impulse, w.n_c), 1.0, w.joints.answer, w.n_j)
-
-
-def turn_onto_joints(w: Work, v: Doubles) -> None:
-    """A velocity onto the rates of the joints at the state last taken."""
-    if not turn(w.joints, v):
-        w.joints.failed = JOINTS_FAILED
 
 
 def turn_accelerations(w: Work, t: float) -> None:
@@ -104,9 +86,9 @@ def turn_accelerations(w: Work, t: float) -> None:
 
 
 def rate_left(plan: Plan, w: Work, c: int) -> float:
-    """The velocity of a gap with the joints; of one that they hold altogether none but what contradicts them."""
+    """The velocity of a gap; of one that joints hold altogether none but what contradicts them."""
     u = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
-    held = not w.joints.rows.flat and left_of(w, c) == 0.0
+    held = w.joined and not w.joints.rows.flat and left_of(w, c) == 0.0
     return 0.0 if held and abs(u) <= UNTOLD * speed_terms(plan, w, c) else u
 
 
@@ -144,7 +126,7 @@ def reach_joints(w: Work, t: float, tau: float, slack: float) -> None:
     But for what is only rounding of the position: over a piece as short as that it would be any velocity.
     """
     copy(w.joints.before, w.q, w.n_q)
-    put_on_joints(w, t, slack, w.q)
+    put_on_joints(w.joints, w.M, t, w.q, w.v, slack)
     if distance(w.q, w.joints.before, w.n_q) <= ROUNDING * largest(w.q, 0.0, w.n_q):
         return
     piece, push = w.joints.piece, w.joints.push
@@ -156,25 +138,15 @@ def reach_joints(w: Work, t: float, tau: float, slack: float) -> None:
 
 def meet_joints(w: Work, tau: float) -> None:
     """The velocity at the end of a piece back onto the joints; their impulses but for those of closed contacts."""
-    turn_onto_joints(w, w.v)
+    turn_onto_joints(w.joints, w.v)
     piece, load, free, answer = w.joints.piece, w.joints.load, w.joints.free, w.joints.answer
     for k in range(w.n_j):
         piece[k] += 0.5 * tau * (load[k] + free[k]) + answer[k]
 
 
-def hold_joints(w: Work, span: float) -> None:
-    """Impulses of the joints over a short stretch of time, those that answer contacts left aside."""
-    add(after(w.impulse, w.n_c), span, w.joints.free, w.n_j)
-
-
-def answer_impulse(w: Work, c: int, p: float) -> None:
-    """Impulses of the joints that answer the impulse p of contact c at an impact."""
-    add(after(w.impulse, w.n_c), p, after(w.joints.share, c * w.n_j), w.n_j)
-
-
-def answer_force(w: Work, c: int, p: float) -> None:
-    """Impulses of the joints that answer the impulse p of contact c over the piece at hand."""
-    add(w.joints.piece, p, after(w.joints.share, c * w.n_j), w.n_j)
+def answer_contact(w: Work, c: int, p: float, impulses: Doubles) -> None:
+    """Impulses of the joints that answer the impulse p of contact c, added to others."""
+    add(impulses, p, after(w.joints.share, c * w.n_j), w.n_j)
 
 
 # --- what is kept ---------------------------------------------------------------------------------------------

@@ -28,5 +28,5 @@ cdef void bend(Joints j, double t, double low, double high, double* q, double* v
 cdef void answer(Joints j, double* x, double* rate, double* out) noexcept nogil
 cdef void follow(Joints j, double* multipliers, double* x) noexcept nogil
 cdef void reduce(Joints j, double* M, Py_ssize_t c, double* row, double* x) noexcept nogil
-cdef bint put(Joints j, double* M, double t, double* q, double* v, double slack) noexcept nogil
-cdef bint turn(Joints j, double* v) noexcept nogil
+cdef void put_on_joints(Joints j, double* M, double t, double* q, double* v, double slack) noexcept nogil
+cdef void turn_onto_joints(Joints j, double* v) noexcept nogil

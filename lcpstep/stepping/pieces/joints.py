@@ -29,6 +29,7 @@ if not cython.compiled:
         leave,
         solve_joints,
     )
+    from lcpstep.stepping.pieces.codes import JOINTS_FAILED, PROJECTION_FAILED
 
 PROJECTIONS = 50  # of Newton
 HELPS = 0.25  # of a joint's gap: what an iteration may leave of it without a new Jacobian
@@ -50,7 +51,7 @@ class Joints:
     before, shifted : (n_q,)
     failed          why the run cannot go on, or 0;
     culprit         is then the joint that does not hold
-    moved           `put` has left the state that was taken before it, for one on its way
+    moved           `put_on_joints` has left the state that was taken before it, for one on its way
 
     Parameters
     ----------
@@ -141,7 +142,7 @@ def reduce(j: Joints, M: Doubles, c: int, row: Doubles, x: Doubles) -> None:
     response(j.system, M, j.shifted, P, x)
 
 
-def put(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, slack: float) -> bool:
+def put_on_joints(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, slack: float) -> None:
     """Q onto the joints by Newton's method, with Jacobian and directions of the state last taken while that helps."""
     before = inf
     clear(j.push, j.n_j)
@@ -152,9 +153,9 @@ def put(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, slack: float) -
             if not abs(j.stretch[k]) <= worst:
                 worst, j.culprit = abs(j.stretch[k]), k
         if arrived(worst, before, slack, j.J, j.n_j, q, j.n_q):
-            return True
+            return
         if not worst < inf:
-            return False
+            break
         if worst > HELPS * before:
             take(j, M, t, q, v)
             j.moved = True
@@ -165,10 +166,10 @@ def put(j: Joints, M: Doubles, t: float, q: Doubles, v: Doubles, slack: float) -
         follow(j, j.answer, q)
         for k in range(j.n_j):
             j.push[k] += j.answer[k]
-    return False
+    j.failed = PROJECTION_FAILED
 
 
-def turn(j: Joints, v: Doubles) -> bool:
+def turn_onto_joints(j: Joints, v: Doubles) -> None:
     """V onto the rates of the joints at the state last taken; the impulses for that into `answer`."""
     n_q, fastest = j.n_q, largest(v, 0.0, j.n_q)
     answer(j, v, j.turning, j.answer)
@@ -180,6 +181,5 @@ def turn(j: Joints, v: Doubles) -> bool:
                 speed = max(speed, abs(j.MJ[n * n_q + i] * j.answer[n]))
             size += abs(j.J[k * n_q + i]) * speed
         if abs(rate) > CONTRADICTION * size:
-            j.culprit = k
-            return False
-    return True
+            j.culprit, j.failed = k, JOINTS_FAILED
+            return

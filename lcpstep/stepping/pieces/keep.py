@@ -10,7 +10,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import max, min
-    from lcpstep.stepping.pieces.smooth import refactor, settle_state
+    from lcpstep.stepping.pieces.smooth import look_along, refactor, settle_state
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import within
 
@@ -18,10 +18,7 @@ if not cython.compiled:
 def keep_times(w: Work, record: Record, now: float, before: float) -> None:
     """Keep the states asked for before the given time, along the piece that begins now."""
     while record.awaited() < before:
-        tau = max(0.0, record.awaited() - now)
-        for i in range(w.n_q):
-            w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
-            w.v_try[i] = w.v[i] + tau * w.a[i]
+        look_along(w, max(0.0, record.awaited() - now))
         record.keep_awaited(w.q_try, w.v_try, w.impulse)
 
 

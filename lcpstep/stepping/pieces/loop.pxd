@@ -14,7 +14,7 @@ cdef class Steps(Stepwise):
     cdef double tau
     cdef public double stop
     cdef Py_ssize_t found, own, n_rows
-    cdef Py_ssize_t start(self, double t) noexcept
+    cpdef Py_ssize_t begin(self, double t)
     cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     @cython.locals(end=Py_ssize_t, code=Py_ssize_t)
     cdef Py_ssize_t move(self) noexcept nogil

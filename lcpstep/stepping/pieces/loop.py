@@ -70,18 +70,14 @@ class Steps(Stepwise):
 
     def begin(self, t: float) -> int:
         """The initial state, at time t; a code."""
-        return self.start(t)
+        with cython.nogil:
+            return begin_motion(self.m, self.plan, self.w, self.record, t)
 
     def put_back(self, end: int) -> None:
         """Kept states up to before the end, which are in the kernels' coordinates, in those of the scene."""
         if end > self.own:
             put_kept_back(self.m, self.record, self.own, end)
             self.own = end
-
-    def start(self, t: float) -> int:
-        """Kernel of `begin`."""
-        with cython.nogil:
-            return begin_motion(self.m, self.plan, self.w, self.record, t)
 
     def run(self, t0: float, first: int, last: int) -> int:
         """`take`, called from Python."""

@@ -28,23 +28,18 @@ if not cython.compiled:
         SAME_TIME,
     )
     from lcpstep.stepping.pieces.contact_forces import hold, land
-    from lcpstep.stepping.pieces.jointed import (
-        load_joints,
-        put_on_joints,
-        share_out,
-        stay_at_base,
-        turn_accelerations,
-    )
+    from lcpstep.stepping.pieces.jointed import load_joints, share_out, stay_at_base, turn_accelerations
+    from lcpstep.stepping.pieces.joints import put_on_joints
     from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
     from lcpstep.stepping.pieces.smooth import (
         ON_THE_SURFACE,
         accelerate,
         advance,
         gap_bias,
+        look_along,
         measure,
         put_on_surface,
-        refactor,
-        respond,
+        renew_mobility,
     )
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import stick
@@ -73,9 +68,8 @@ def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool
         for c in range(n_c):
             w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
     if closed and not plan.constant:
-        if not refactor(m, w, t):
+        if not renew_mobility(m, plan, w, t):
             return False
-        respond(m, w)
         if w.joined:
             turn_accelerations(w, within(w, t))
     if not hold(m, plan, w, record, place, t):
@@ -128,8 +122,7 @@ def pressed(plan: Plan, w: Work, place: int) -> None:
 
 def fitted(m: Model, plan: Plan, w: Work, t: float, rest: float) -> None:
     """Gap quadratics that fit the gap at the end of the piece; from accelerations where gaps tell less than these."""
-    for i in range(w.n_q):
-        w.q_try[i] = w.q[i] + rest * (w.v[i] + 0.5 * rest * w.a[i])
+    look_along(w, rest)
     gaps(m, t + rest, w.q_try, w.v, w.gap_try)
     for c in range(w.n_c):
         if from_ground(plan, w, c):
@@ -210,11 +203,10 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
 
 def look(m: Model, plan: Plan, w: Work, t: float, tau: float) -> None:
     """The gaps at tau after the base of the piece, which is at t, into w.gap_try."""
-    for i in range(w.n_q):
-        w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
+    look_along(w, tau)
     if w.joined:
         stay_at_base(w, t)
-        put_on_joints(w, t + tau, plan.slack, w.q_try)
+        put_on_joints(w.joints, w.M, t + tau, w.q_try, w.v, plan.slack)
     gaps(m, t + tau, w.q_try, w.v, w.gap_try)
 
 
@@ -255,10 +247,8 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
             if to_end:
                 put_on_surface(m, plan, w, now + tau)
         else:
-            if not plan.constant:
-                if not refactor(m, w, now + tau):
-                    return NOT_FINITE
-                respond(m, w)
+            if not renew_mobility(m, plan, w, now + tau):
+                return NOT_FINITE
             if not land(m, plan, w, record, now, tau):
                 return LCP_FAILED
             if taken or penetrates(plan, w):

@@ -27,6 +27,7 @@ if not cython.compiled:
         ROUNDING,
         SAME_TIME,
     )
+    from lcpstep.stepping.pieces.event import lift
     from lcpstep.stepping.pieces.impulses import strike
     from lcpstep.stepping.pieces.jumps import breaks
     from lcpstep.stepping.pieces.keep import keep
@@ -50,8 +51,7 @@ if not cython.compiled:
         measure,
         newton_step,
         put_on_surface,
-        refactor,
-        respond,
+        renew_mobility,
         settle_state,
     )
     from lcpstep.stepping.pieces.state import Plan, Work
@@ -62,14 +62,10 @@ SLOW = 1e-3  # of a step: a touch is no event twice within so short a time
 
 
 class PolynomialSteps(Steps):
-    """Steps of order four, or of exact motion.
+    """Steps of order four, or of exact motion; parameters are those of `Steps`.
 
     z      the polynomial of the piece at hand
     opens  whether the contact that ends the piece loses its force there, and does not land
-
-    Parameters
-    ----------
-    m : Model;  plan : Plan;  w : Work;  record : Record
     """
 
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
@@ -187,10 +183,8 @@ def follow(
         z.gap_to[c] = carried(m, plan, w, z, now, tau, c)
     measure(m, w, now + tau)
     if not on_surface(plan, w) and (w.closed_now > 0 or penetrates(plan, w)):
-        if not plan.constant:
-            if not refactor(m, w, now + tau):
-                return NOT_FINITE
-            respond(m, w)
+        if not renew_mobility(m, plan, w, now + tau):
+            return NOT_FINITE
         put_on_surface(m, plan, w, now + tau)
         w.off = distance(w.q, z.q, w.n_q)
         slide(m, w, within(w, now + tau))
@@ -236,10 +230,8 @@ def touch(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
         return NOT_FINITE
     gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
     biases(m, w, t, w.q, w.v)
-    if not plan.constant:
-        if not refactor(m, w, t):
-            return NOT_FINITE
-        respond(m, w)
+    if not renew_mobility(m, plan, w, t):
+        return NOT_FINITE
     for d in range(w.n_c):
         w.half[d] = 0.5 * (product(w.G, w.a, d, w.n_q) + w.bias[d])
     n_s = strike(m, plan, w, record, c, t)
@@ -248,10 +240,7 @@ def touch(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
         return LCP_FAILED if n_s < 0 else FINISHED
     for k in range(n_s):  # rounding of the velocity must not be larger than that of small hops
         d = w.chosen[k]
-        W, error = w.W[d * w.n_c + d], w.rate[d] - product(w.G, w.v, d, w.n_q) - w.gap_t[d]
-        if W > 0.0:
-            for i in range(w.n_q):
-                w.v[i] += w.MG[d * w.n_q + i] * error / W
+        lift(m, plan, w, w.v, d, w.rate[d] - product(w.G, w.v, d, w.n_q) - w.gap_t[d])
     if record.keeps_events():
         keep(w, record, t, 1.0)
     return FINISHED

@@ -16,8 +16,7 @@ from lcpstep.stepping.pieces.carried import displaced
 from lcpstep.stepping.pieces.codes import ROUNDING
 from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.start import MARGIN
-from lcpstep.stepping.steps import inverse
+from lcpstep.stepping.steps import MARGIN, inverse
 from lcpstep.turns import turns
 
 if TYPE_CHECKING:

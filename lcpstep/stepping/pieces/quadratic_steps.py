@@ -21,19 +21,14 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.loop import Steps, is_finite
     from lcpstep.stepping.pieces.piece import begin_piece, first_contact, look, move, polish
     from lcpstep.stepping.pieces.race import race
-    from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE, mobility, renew_forces
+    from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE, look_along, mobility, renew_forces
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle
     from lcpstep.stepping.pieces.times import at_corner, within
 
 
 class QuadraticSteps(Steps):
-    """Steps of order two.
-
-    Parameters
-    ----------
-    m : Model;  plan : Plan;  w : Work;  record : Record
-    """
+    """Steps of order two; parameters are those of `Steps`."""
 
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
         super().__init__(m, plan, w, record)
@@ -86,9 +81,7 @@ class QuadraticSteps(Steps):
 
 def measure_at(m: Model, w: Work, at: float, tau: float) -> None:
     """The same; of flat contacts what obstacles alone make, beside accelerations that are linear over the piece."""
-    for i in range(w.n_q):
-        w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
-        w.v_try[i] = w.v[i] + tau * w.a[i]
+    look_along(w, tau)
     gap_rates(m, at, w.q_try, w.v_try, w.G_try, w.gap_t_try)
     for c in range(w.n_c if m.flat and moves(m) else 0):
         begins = -2.0 * w.bias[c] - w.end_s[c]

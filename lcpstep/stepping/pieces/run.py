@@ -51,9 +51,8 @@ class LocatedRun(StepRun):
         kind = QuadraticSteps if method.order == 2 else PolynomialSteps
         self.loop = kind(self.model, p, self.work, self.recorder.record)
         self.loop.stop = scene.t_span[1]
-        self.finite: tuple[float, Array, Array] | None = (
-            None  # the last state known, after a step that failed
-        )
+        # The last state known, after a step that failed
+        self.finite: tuple[float, Array, Array] | None = None
 
     def begin(self) -> int:
         """The initial state; a code."""

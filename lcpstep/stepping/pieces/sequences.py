@@ -22,9 +22,8 @@ if not cython.compiled:
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 IN_A_ROW = 8  # so many impacts, each at the instant of the one before, are a collapse once faint or short
-AS_SLOW = (
-    100.0  # times the energy of a contact that comes to rest: what others that do so with it have at most
-)
+# Times the energy of a contact that comes to rest: what others that do so with it have at most
+AS_SLOW = 100.0
 FINE = 1e-3  # of its terms: a speed below it may be finer than velocities resolve
 MANY_AT_ONCE = 64  # impacts of a contact at an instant: their rounding is no longer that of a few terms
 

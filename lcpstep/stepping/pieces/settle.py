@@ -21,8 +21,8 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import abs, max, min
+    from lcpstep.kernels.vectors import add, product
+    from lcpstep.pointers import abs, after, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
@@ -35,7 +35,7 @@ if not cython.compiled:
         NOT_FINITE,
         ROUNDING,
     )
-    from lcpstep.stepping.pieces.jointed import answer_impulse, hold_joints, turn_with_joints
+    from lcpstep.stepping.pieces.jointed import answer_contact, turn_with_joints
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import speed_terms
     from lcpstep.stepping.pieces.refine import NONE
@@ -45,7 +45,7 @@ if not cython.compiled:
         put_on_surface,
         refactor,
         renew_forces,
-        respond,
+        renew_mobility,
     )
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import SHORT_TOGETHER, release, stick
@@ -74,11 +74,11 @@ def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
         w.pushed[c] += p
         if p > 0.0:
             if w.joined:
-                answer_impulse(w, c, p)
+                answer_contact(w, c, p, after(w.impulse, w.n_c))
             for i in range(n):
                 w.v[i] += w.MG[c * w.n_q + i] * p
     if w.joined:
-        hold_joints(w, span)
+        add(after(w.impulse, w.n_c), span, w.joints.free, w.n_j)
     for i in range(n):
         w.q[i] += span * w.v[i]
     w.sigma = w.end if span == rest else w.sigma + span
@@ -93,10 +93,8 @@ def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:
     n_c = w.n_c
     gap_rates(m, within(w, t), w.q, w.v, w.G, w.gap_t)
     gap_bias(m, w, within(w, t), w.q, w.v)
-    if not plan.constant:
-        if not refactor(m, w, t):
-            return False
-        respond(m, w)
+    if not renew_mobility(m, plan, w, t):
+        return False
     for c in range(n_c):
         w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
         if w.gap[c] <= plan.slack:

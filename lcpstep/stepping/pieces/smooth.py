@@ -22,15 +22,9 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
-    from lcpstep.stepping.pieces.jointed import (
-        meet_both,
-        meet_joints,
-        nearly_held,
-        put_on_joints,
-        reach_joints,
-        settle_velocity,
-    )
+    from lcpstep.stepping.pieces.jointed import meet_both, meet_joints, nearly_held, reach_joints
     from lcpstep.stepping.pieces.joints import accelerate as join_acceleration
+    from lcpstep.stepping.pieces.joints import put_on_joints, turn_onto_joints
     from lcpstep.stepping.pieces.joints import reduce as reduce_mobility
     from lcpstep.stepping.pieces.joints import take as take_joints
     from lcpstep.stepping.pieces.state import Plan, Work
@@ -62,11 +56,16 @@ def invert(m: Model, plan: Plan, w: Work, rest: float, place: int) -> None:
             for i in range(n):
                 inverse[i * n + j] = plan.unit[i]
     if plan.constant:
-        for c in range(n_c):
-            for i in range(n):
-                AG[c * n + i] = product(inverse, after(m.G, c * n), i, n)
-            for d in range(n_c):
-                WA[d * n_c + c] = product(m.G, after(AG, c * n), d, n)
+        answer_forces(inverse, m.G, AG, WA, n, n_c)
+
+
+def answer_forces(inverse: Doubles, G: Doubles, AG: Doubles, WA: Doubles, n: int, n_c: int) -> None:
+    """(A^-1 G^T)^T and G A^-1 G^T: how accelerations answer contact forces over a piece."""
+    for c in range(n_c):
+        for i in range(n):
+            AG[c * n + i] = product(inverse, after(G, c * n), i, n)
+        for d in range(n_c):
+            WA[d * n_c + c] = product(G, after(AG, c * n), d, n)
 
 
 def accelerate(m: Model, plan: Plan, w: Work) -> int:
@@ -159,6 +158,22 @@ def measure(m: Model, w: Work, t: float) -> None:
             w.gap[c] = w.rate[c] = 0.0
 
 
+def look_along(w: Work, tau: float) -> None:
+    """The state at tau after the base, along the quadratics, into w.q_try and w.v_try."""
+    for i in range(w.n_q):
+        w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
+        w.v_try[i] = w.v[i] + tau * w.a[i]
+
+
+def renew_mobility(m: Model, plan: Plan, w: Work, t: float) -> bool:
+    """What impulses do at the state w.q, where that changes; False where the mass matrix fails."""
+    if not plan.constant:
+        if not refactor(m, w, t):
+            return False
+        respond(m, w)
+    return True
+
+
 def shift(w: Work, tau: float) -> None:
     """The state at tau after the base becomes the base: along the quadratics."""
     for i in range(w.n_q):
@@ -182,7 +197,7 @@ def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
     near = ON_THE_SURFACE * plan.slack
     for landing in range(LANDINGS):
         if w.joined:
-            put_on_joints(w, t, plan.slack, w.q)
+            put_on_joints(w.joints, w.M, t, w.q, w.v, plan.slack)
         gaps(m, t, w.q, w.v, w.gap_try)
         worst, closed = 0.0, landing == 0 and closed_off(w) > near
         for c in range(w.n_c):
@@ -219,11 +234,12 @@ def settle_state(m: Model, plan: Plan, w: Work, t: float, q: Doubles) -> None:
     copy(w.q_base, w.q, w.n_q)
     copy(w.q, q, w.n_q)
     if w.joined:
-        put_on_joints(w, t, plan.slack, w.q)
+        put_on_joints(w.joints, w.M, t, w.q, w.v, plan.slack)
     if refactor(m, w, t):
         put_on_surface(m, plan, w, t)
         if w.joined:
-            settle_velocity(w, t)
+            take_joints(w.joints, w.M, t, w.q, w.v_try)
+            turn_onto_joints(w.joints, w.v_try)
     copy(q, w.q, w.n_q)
     copy(w.q, w.q_base, w.n_q)
 
@@ -256,9 +272,8 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
         shift(w, tau)
         return True
     n, t_next = w.n_q, t + tau
-    for i in range(n):
-        w.v_try[i] = w.v[i] + tau * w.a[i]
-        w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
+    look_along(w, tau)
+    copy(w.q, w.q_try, n)
     for c in range(w.n_c):
         w.impulse[c] += 0.5 * tau * w.force_now[c]
         w.pushed[c] += 0.5 * tau * w.force_now[c]

@@ -15,9 +15,8 @@ from lcpstep.stepping.steps import divided
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
 
-ROUNDING = (
-    1e-12  # absolute and relative: hops that rise no higher, and sliding velocities of this size, are over
-)
+# Absolute and relative: hops that rise no higher, and sliding velocities of this size, are over
+ROUNDING = 1e-12
 
 
 class RubbingRun(ContactRun):
@@ -29,18 +28,8 @@ class RubbingRun(ContactRun):
         """The motion at the start of the span."""
         parts = list(divided(scene.t_span, method.h))
         h, n = parts[0][0], parts[-1][3]
-        order = int(method.order)
-        system: RubbingSteps = start(
-            scene,
-            RubbingSteps,
-            ROUNDING,
-            ROUNDING,
-            order,
-            h,
-            float(scene.t_span[0]),
-            n,
-            method.tolerance or 0.0,
-        )
+        steps = int(method.order), h, float(scene.t_span[0]), n, method.tolerance or 0.0
+        system: RubbingSteps = start(scene, RubbingSteps, ROUNDING, ROUNDING, *steps)
         span = scene.t_span[1] - scene.t_span[0]
         system.next_step = FIRST * span if method.tolerance else h
         return system

@@ -1,6 +1,6 @@
 """The Moreau theta-method, as kernels.
 
-theta_loop, theta_step    the loop over steps; a step: `plan`, its constants, `moving`, its state and rows
+theta_loop, theta_step    the loop over steps; a step; `moving`, its constants, state and rows
 row_impulses, blows       impulses of the rows that take part; blows one after another
 implicit, responses       Newton's iteration of nonlinear systems; what impulses make of velocities
 one_contact               one coordinate and contact, in registers

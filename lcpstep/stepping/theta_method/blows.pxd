@@ -1,7 +1,6 @@
 cimport cython
 from lcpstep.kernels.model cimport Model
-from lcpstep.stepping.theta_method.moving cimport Blows, Rows, State
-from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.moving cimport Blows, Plan, Rows, State
 
 cdef Py_ssize_t FINISHED, NEED_LCP
 cdef Py_ssize_t TURNS

@@ -25,8 +25,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import clear, copy, copy_indices, largest, product
     from lcpstep.pointers import abs, max, min
-    from lcpstep.stepping.theta_method.moving import Blows, Rows, State
-    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.moving import Blows, Plan, Rows, State
     from lcpstep.stepping.theta_method.responses import prepare
     from lcpstep.stepping.theta_method.row_impulses import forced, impulses, pose, take_part
 

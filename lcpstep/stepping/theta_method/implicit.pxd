@@ -1,7 +1,6 @@
 cimport cython
 from lcpstep.kernels.model cimport Model
-from lcpstep.stepping.theta_method.moving cimport State
-from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.moving cimport Plan, State
 
 cdef double DIFFERENCE, SLOW, FAR
 cdef Py_ssize_t REFRESH

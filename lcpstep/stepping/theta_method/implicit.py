@@ -20,8 +20,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import add, copy, largest, product
     from lcpstep.pointers import Doubles, abs, max
-    from lcpstep.stepping.theta_method.moving import State
-    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.moving import Plan, State
 
 DIFFERENCE = 1e-7  # relative; A only steers the iteration, its error does not enter the motion
 SLOW = 1e-3  # velocities below it are as good as none, as are this share of what the forces make in a step,

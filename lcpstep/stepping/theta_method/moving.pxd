@@ -9,6 +9,13 @@ cdef Py_ssize_t VECTORS, SQUARES
 cdef class Rows
 
 
+cdef class Plan:
+    cdef readonly object matrices
+    cdef public double h, theta, slack
+    cdef public bint constant
+    cdef Doubles A_q, A_v, A_f, X, W
+
+
 cdef class State:
     cdef readonly object arrays
     cdef object numbers, marks, work

@@ -1,8 +1,7 @@
 cimport cython
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.stepping.theta_method.moving cimport Rows, State
-from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.moving cimport Plan, Rows, State
 
 cdef Py_ssize_t EVENTS, IMPACT, NO_EVENT, RELEASE, STICK
 cdef double RESOLUTION, RESTING, UNTOLD

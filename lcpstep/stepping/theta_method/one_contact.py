@@ -19,8 +19,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import finite
     from lcpstep.pointers import abs, max
-    from lcpstep.stepping.theta_method.moving import Rows, State
-    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 
 EVENTS = 2  # that a step may note
 

@@ -27,8 +27,7 @@ if not cython.compiled:
     from lcpstep.pointers import abs, after, inf, max
     from lcpstep.stepping.constraints.directions import mobilities
     from lcpstep.stepping.constraints.joint_rows import NEARLY, arrived, distribute, eliminate
-    from lcpstep.stepping.theta_method.moving import Rows, State
-    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 
 PROJECTIONS = 20  # of Newton
 

@@ -1,6 +1,5 @@
 from lcpstep.kernels.model cimport Model
-from lcpstep.stepping.theta_method.moving cimport Rows, State
-from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.moving cimport Plan, Rows, State
 
 cdef Py_ssize_t FOLLOWED
 

@@ -15,8 +15,7 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, after
     from lcpstep.stepping.constraints.directions import mobilities
     from lcpstep.stepping.theta_method.implicit import REFRESH, compliance
-    from lcpstep.stepping.theta_method.moving import Rows, State
-    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 
 FOLLOWED = 12  # iterations, by which contacts' rows are at the end of the step as far as they ever are
 

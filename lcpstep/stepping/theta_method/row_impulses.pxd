@@ -1,7 +1,6 @@
 cimport cython
 from lcpstep.kernels.model cimport Model
-from lcpstep.stepping.theta_method.moving cimport Rows, State
-from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.moving cimport Plan, Rows, State
 
 cdef Py_ssize_t FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
 cdef double UNTOLD, CONVERGED, CANCELLED, EPS, ROUNDING, NO_APPROACH

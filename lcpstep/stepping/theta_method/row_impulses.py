@@ -20,8 +20,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import finite, largest, product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
     from lcpstep.stepping.constraints.joint_rows import distribute, eliminate, lost
-    from lcpstep.stepping.theta_method.moving import Rows, State
-    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
     from lcpstep.stepping.theta_method.responses import respond
     from lcpstep.stepping.theta_method.turned_rows import put_rows_on_joints, sweep_out_turned
 

@@ -1,8 +1,7 @@
 from lcpstep.kernels.course cimport Stepwise
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
-from lcpstep.stepping.theta_method.moving cimport Rows, State
-from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.moving cimport Plan, Rows, State
 
 cdef Py_ssize_t FINISHED, BUFFER_FULL, NOT_FINITE
 cdef double LATE

@@ -14,9 +14,8 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.vectors import copy, finite, product
     from lcpstep.pointers import min
-    from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
     from lcpstep.stepping.theta_method.one_contact import glide
-    from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.theta_step import take_step
 
 

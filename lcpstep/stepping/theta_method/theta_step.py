@@ -46,9 +46,8 @@ if not cython.compiled:
     from lcpstep.stepping.constraints.joint_rows import joints_hold
     from lcpstep.stepping.theta_method.blows import one_after_another, separates
     from lcpstep.stepping.theta_method.implicit import linearise
-    from lcpstep.stepping.theta_method.moving import Rows, State
+    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
     from lcpstep.stepping.theta_method.one_contact import closed_since, kind_of
-    from lcpstep.stepping.theta_method.plan import Plan
     from lcpstep.stepping.theta_method.repair import project
     from lcpstep.stepping.theta_method.responses import prepare
     from lcpstep.stepping.theta_method.row_impulses import (

@@ -1,8 +1,7 @@
 cimport cython
 from lcpstep.kernels.model cimport Model
 from lcpstep.stepping.constraints.joint_rows cimport Elimination
-from lcpstep.stepping.theta_method.moving cimport Rows, State
-from lcpstep.stepping.theta_method.plan cimport Plan
+from lcpstep.stepping.theta_method.moving cimport Plan, Rows, State
 
 cdef double LANDED
 cdef Py_ssize_t LANDINGS

@@ -32,8 +32,7 @@ if not cython.compiled:
         solve_joints,
     )
     from lcpstep.stepping.theta_method.implicit import compliance
-    from lcpstep.stepping.theta_method.moving import Rows, State
-    from lcpstep.stepping.theta_method.plan import Plan
+    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 
 
 LANDINGS = 20  # of Newton
