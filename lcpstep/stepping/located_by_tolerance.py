@@ -29,6 +29,7 @@ if not cython.compiled:
         TOO_MANY_EVENTS,
     )
     from lcpstep.stepping.pieces.times import driven_by
+    from lcpstep.stepping.step_control import follow_on, stamp
 
 EARLY = 1.0 / 32.0  # of a step: an event before it leaves nothing to compare
 NEAR = 3.0  # errors of a gap: from where on it may have closed
@@ -59,7 +60,9 @@ class Attempts(Parts):
             early = trial < TRIALS - 2 and (self.alike or self.saved.closed_now > 0)
             if early and EARLY * (end - start) < until < 0.5 * (end - start):
                 end, entire, until = start + until, False, inf
-        self.in_time()
+        # Nothing of a step comes after the multiple that it ends at, or before what was kept, by rounding
+        stamp(self.record, self.row, self.event, self.to_time, self.to_time)
+        follow_on(self.record, self.row)
         self.full = self.two.code == BUFFER_FULL and self.event + self.row > 0
         if not self.full:
             self.weigh(end - start)

@@ -43,6 +43,5 @@ cdef class Parts(Control):
     cdef void place(self, int level, double made_for) noexcept nogil
     @cython.locals(just=bint)
     cdef void carry_on(self, double start, bint anew, double close) noexcept nogil
-    cdef void in_time(self) noexcept nogil
     cdef void led(self, Led to, Py_ssize_t code) noexcept nogil
     cdef void loads(self, double* force, double* impulse) noexcept nogil

@@ -25,7 +25,6 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.loop import Steps
     from lcpstep.stepping.pieces.smooth import invert
     from lcpstep.stepping.pieces.switches import COLLAPSE
-    from lcpstep.stepping.step_control import follow_on, stamp
 
 MATRICES = ["A_inverse", "AG", "WA"]  # of a plan, that depend on h
 OWN = LEVELS + 2  # place of those of a part as long as none
@@ -184,11 +183,6 @@ class Parts(Control):
                 self.w.last[c] = start if just else -1.0
                 self.w.turned[c] = self.w.turned[c] + (start - self.w.sigma)
         self.w.sigma, self.w.end = start, 0.0
-
-    def in_time(self) -> None:
-        """Nothing of a step comes after the multiple that it ends at, or before what was kept, by rounding."""
-        stamp(self.record, self.row, self.event, self.to_time, self.to_time)
-        follow_on(self.record, self.row)
 
     def led(self, to: Led, code: int) -> None:
         """Where the part that has just been taken led."""

@@ -35,7 +35,6 @@ cdef class Attempts(Control):
     cdef Py_ssize_t part(self, int part, double start, double h, double slow) noexcept nogil
     cdef double ahead(self) noexcept nogil
     cdef void look_ahead(self, double t) noexcept nogil
-    cdef int level_of(self, int part) noexcept nogil
     cdef void place(self, int level, double h) noexcept nogil
     cdef void before(self, double slow) noexcept nogil
     @cython.locals(struck=bint, thrown=bint, closes=bint)

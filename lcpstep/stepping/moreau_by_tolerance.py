@@ -162,7 +162,8 @@ class Attempts(Control):
         """The step (part 0), or a half of it, taken from `start`; errors at its contacts."""
         row, event = self.record.row, self.record.event
         self.before(slow)
-        self.place(self.level_of(part), h)
+        level = self.level if self.even else OWN
+        self.place(level if part == 0 else level + 1, h)
         if self.m.linear and not self.even and part < 2:
             refit(self.m, self.plan, self.s, self.rows, start)
         k = self.s.steps
@@ -216,11 +217,6 @@ class Attempts(Control):
                 if self.s.u[i] < before - slow:  # however far rounding has opened it
                     self.blow, self.s.g[i] = True, min(0.0, self.s.g[i])
                 self.s.u[i] = before
-
-    def level_of(self, part: int) -> int:
-        """Place of the matrices of a part."""
-        first = self.level if self.even else OWN
-        return first if part == 0 else first + 1
 
     def place(self, level: int, h: float) -> None:
         """What a step of a level multiplies with."""

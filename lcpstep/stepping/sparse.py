@@ -44,6 +44,8 @@ SOLVERS = ("lemke", "auto", "newton")  # names under which a sparse scene may as
 class SparseRun(StepRun):
     """One run of a sparse scene; see `moreau`, whose rules for steps, kept states and endings it obeys."""
 
+    steps, now = 0, 0.0  # taken; time of the current state [s]
+
     def __init__(self, method: Moreau, scene: Scene, kept: Kept) -> None:
         n_q, n_c = scene.n_q, scene.n_c
         frictional = scene.contacts is not None and scene.contacts.friction is not None
@@ -53,20 +55,10 @@ class SparseRun(StepRun):
         self.equations = Equations(scene)
         size = largest(scene.q0, self.equations.offset, method.h * np.asarray(scene.v0))
         self.slack = RESTING * (size or 1.0)
-        self.q, self.v, self.t = np.array(scene.q0), np.array(scene.v0), scene.t_span[0]
+        self.q, self.v, self.now = np.array(scene.q0), np.array(scene.v0), scene.t_span[0]
         self.p, self.impulse = np.zeros(n_c), np.zeros(n)
         self.closed, self.active = np.zeros(n_c, dtype=np.int64), np.zeros(n_c, dtype=bool)
-        self.taken = self.problems = self.forces = 0
-
-    @property
-    def steps(self) -> int:
-        """Steps taken."""
-        return self.taken
-
-    @property
-    def now(self) -> float:
-        """Time of the current state [s]."""
-        return self.t
+        self.steps = self.problems = self.forces = 0
 
     @property
     def state(self) -> tuple[Array, Array]:
@@ -76,12 +68,12 @@ class SparseRun(StepRun):
     @property
     def ahead(self) -> tuple[float, float]:
         """Times at which a callback may be what has failed [s]."""
-        return self.t, self.t + self.method.h
+        return self.now, self.now + self.method.h
 
     @property
     def counts(self) -> Counts:
         """Work done."""
-        return Counts(self.taken, self.problems, self.forces, self.recorder.taken)
+        return Counts(self.steps, self.problems, self.forces, self.recorder.taken)
 
     def plan_for(self, h: float) -> Step:
         """What steps of size h multiply with."""
@@ -90,21 +82,21 @@ class SparseRun(StepRun):
     def begin(self) -> int:
         """Forces and gaps of the initial state, which is kept where states are."""
         self.plan = self.plan_for(self.stretches[0][0])
-        side = start_side(self.scene, self.t)
+        side = start_side(self.scene, self.now)
         self.F = self.equations.force(side, self.q, self.v)
         self.forces += 1
         self.g, self.u = self.gaps(side, self.q, self.v)
         times = self.kept.times
-        if len(times) == 0 or times[0] == self.t:
-            self.keep(self.t, self.q, self.v)
+        if len(times) == 0 or times[0] == self.now:
+            self.keep(self.now, self.q, self.v)
             self.recorder.record.next_time = min(1, len(times))
         return Status.DONE
 
     def take(self, last: int) -> int:
         """Steps up to the one before `last`; why they ended."""
         status = Status.DONE
-        while self.taken < last and status == Status.DONE:
-            k = self.taken - self.first
+        while self.steps < last and status == Status.DONE:
+            k = self.steps - self.first
             status = self.step(self.plan, self.t0 + self.plan.h * k, self.t0 + self.plan.h * (k + 1))
         return status
 
@@ -131,12 +123,12 @@ class SparseRun(StepRun):
         q = self.q + step.h * (theta * v + (1.0 - theta) * self.v)
         happened = self.log(t_next, e.G_rows.times(v) - s_t)
         self.keep_times(step.h, t, t_next, q, v)
-        self.q, self.v, self.F, self.t = q, v, F_next, t_next
+        self.q, self.v, self.F, self.now = q, v, F_next, t_next
         self.g, self.u = self.gaps(t_next, q, v)
-        self.taken += 1
+        self.steps += 1
         if not (np.all(np.isfinite(self.g)) and np.all(np.isfinite(self.u)) and np.all(np.isfinite(q))):
             return Status.NOT_FINITE
-        if (self.kept.every and self.taken % self.kept.every == 0) or (self.kept.on_events and happened):
+        if (self.kept.every and self.steps % self.kept.every == 0) or (self.kept.on_events and happened):
             self.keep(t_next, q, v)
         return Status.DONE
 
@@ -147,8 +139,8 @@ class SparseRun(StepRun):
         in_doubt = np.flatnonzero((self.closed > 0) & ~active)
         if len(in_doubt):
             size = self.equations.G_rows.sizes(self.q)[in_doubt]
-            late = UNTOLD * np.abs(self.t * (self.equations.G_rows.times(self.v) - self.u)[in_doubt])
-            active[in_doubt] = gap[in_doubt] <= self.slack + (RESTING + RESOLUTION * self.taken) * size + late
+            late = UNTOLD * np.abs(self.now * (self.equations.G_rows.times(self.v) - self.u)[in_doubt])
+            active[in_doubt] = gap[in_doubt] <= self.slack + (RESTING + RESOLUTION * self.steps) * size + late
         return active
 
     def velocity(
@@ -229,7 +221,7 @@ class SparseRun(StepRun):
 
     def with_last(self, s: States) -> States:
         """The states, and the one that has been reached."""
-        return s.and_then(self.t, self.q, self.v, self.impulse)
+        return s.and_then(self.now, self.q, self.v, self.impulse)
 
     def dense(self, s: States) -> interpolation.Linear:
         """How states between kept ones follow from them."""

@@ -71,7 +71,7 @@ class CoupledRun(SparseRun):
 
     def plan_for(self, h: float) -> CoupledStep:
         """What steps of size h multiply with."""
-        data, _ = self.joints.at(self.t, self.q, self.v)
+        data, _ = self.joints.at(self.now, self.q, self.v)
         return CoupledStep(self.equations, h, self.method.theta, self.T, self.joints.matrix(data))
 
     def velocity(
@@ -129,7 +129,7 @@ class CoupledRun(SparseRun):
 
         Joints that turn seldom come to hold a contact's normal: looked for at the start, and while they do.
         """
-        known = self.taken > 0 and not (self.joints.turning and self.of_joints.any())
+        known = self.steps > 0 and not (self.joints.turning and self.of_joints.any())
         if self.joints.n > 0 and not known:
             step.coupled.turn(J, J)
             self.of_joints = step.coupled.of_joints()

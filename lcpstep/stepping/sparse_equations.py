@@ -18,6 +18,33 @@ Array = NDArray[np.float64]
 REST = 8 * np.finfo(float).eps  # of the size of a velocity's terms: zero
 
 
+class Callbacks:
+    """Functions of a scene, by name: each fills an array of its own shape.
+
+    Parameters
+    ----------
+    scene : Scene;  of : "system" or "joints";  given : functions by name;  shapes : likewise
+    """
+
+    def __init__(
+        self, scene: Scene, of: str, given: dict[str, Any], shapes: dict[str, tuple[int, ...]]
+    ) -> None:
+        addresses, self.kept = c_functions(scene, **{of: given})
+        p, n_q, self.shapes = np.array(scene.p), scene.n_q, shapes
+        self.functions = {
+            name: Function(address, p, n_q, n_q, shapes[name]) for name, address in addresses[of].items()
+        }
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.functions
+
+    def value(self, name: str, t: float, q: Array, v: Array) -> Array:
+        """Value of a function that is there."""
+        out = np.full((1, *self.shapes[name]), np.nan)
+        self.functions[name].sample(np.array([t]), np.ascontiguousarray(q), np.ascontiguousarray(v), out)
+        return out[0]
+
+
 class Equations:
     """The scene's sparse matrices, forces and gaps."""
 
@@ -37,36 +64,24 @@ class Equations:
         self.G_rows, self.K_rows = SparseRows(self.G), SparseRows(self.K)
         self.offset = np.zeros(0) if contacts is None else np.array(contacts.offset)
         self.restitution = np.zeros(0) if contacts is None else np.array(contacts.restitution)
-        self.p = np.array(scene.p)
         self.harmonic = system.force if isinstance(system.force, Harmonic) else None
         self.terms = (self.harmonic or Harmonic()).terms(n_q)
         motion = None if contacts is None else contacts.motion
         named = {"force": system.force, "frame": system.frame, "motion": motion}
         given = {name: f for name, f in named.items() if callable(f)}
-        addresses, self.kept = c_functions(scene, system=given)
         shapes = {"force": (n_q,), "frame": (n_q, 3), "motion": (len(self.offset), 3)}
-        self.callbacks = {
-            name: Function(address, self.p, n_q, n_q, shapes[name])
-            for name, address in addresses["system"].items()
-        }
-
-    def value(self, name: str, t: float, q: Array, v: Array, shape: tuple[int, ...]) -> Array:
-        """Value of a callback."""
-        out = np.full((1, *shape), np.nan)
-        self.callbacks[name].sample(np.array([t]), np.ascontiguousarray(q), np.ascontiguousarray(v), out)
-        return out[0]
+        self.callbacks = Callbacks(scene, "system", given, shapes)
 
     def force(self, t: float, q: Array, v: Array) -> Array:
         """F(t), the forces of a moving frame included."""
-        n = len(q)
         if self.harmonic:
             constant, cosine, sine = self.terms
             angle = self.harmonic.omega * t
             F = constant + cosine * np.cos(angle) + sine * np.sin(angle)
         else:
-            F = self.value("force", t, q, v, (n,))
+            F = self.callbacks.value("force", t, q, v)
         if "frame" in self.callbacks:
-            c = self.value("frame", t, q, v, (n, 3))
+            c = self.callbacks.value("frame", t, q, v)
             F = F - (self.M @ c[:, 2] + self.C @ c[:, 1] + self.K @ c[:, 0])
         return F
 
@@ -74,7 +89,7 @@ class Equations:
         """Position and velocity of the obstacles."""
         if "motion" not in self.callbacks:
             return np.zeros(len(self.offset)), np.zeros(len(self.offset))
-        s = self.value("motion", t, q, v, (len(self.offset), 3))
+        s = self.callbacks.value("motion", t, q, v)
         return s[:, 0], s[:, 1]
 
 
@@ -87,7 +102,7 @@ class JointRows:
     def __init__(self, scene: Scene) -> None:
         from scipy.sparse import csr_array
 
-        joints, n_q, p = scene.joints, scene.n_q, np.array(scene.p)
+        joints, n_q = scene.joints, scene.n_q
         self.n, self.turning, self.shape = scene.n_j, isinstance(joints, Joints), (scene.n_j, n_q)
         given: dict[str, Any] = {}
         if isinstance(joints, Joints):
@@ -100,24 +115,20 @@ class JointRows:
             template, size = csr_array(G), 0
             given = {"motion": None if joints is None else joints.motion}
         self.indices, self.indptr, self.data = template.indices, template.indptr, template.data
-        addresses, self.kept = c_functions(scene, joints={k: f for k, f in given.items() if f is not None})
-        self.shapes = {"entries": (size,), "gap_t": (self.n,), "motion": (self.n, 3)}
-        self.callbacks = {
-            name: Function(address, p, n_q, n_q, self.shapes[name])
-            for name, address in addresses["joints"].items()
-        }
+        shapes = {"entries": (size,), "gap_t": (self.n,), "motion": (self.n, 3)}
+        given = {name: f for name, f in given.items() if f is not None}
+        self.callbacks = Callbacks(scene, "joints", given, shapes)
 
     def at(self, t: float, q: Array, v: Array) -> tuple[Array, Array]:
         """Entries of J in the order of its rows, and the rates J_t at v = 0."""
-        where = np.array([t]), np.ascontiguousarray(q), np.ascontiguousarray(v)
-        values = {}
-        for name, f in self.callbacks.items():
-            values[name] = np.full(self.shapes[name], np.nan)
-            f.sample(*where, values[name])
-        data = values["entries"][self.entry] if self.turning else self.data
-        if "motion" in values:
-            return data, -values["motion"][:, 1]
-        return data, values.get("gap_t", np.zeros(self.n))
+        known, data, rates = self.callbacks, self.data, np.zeros(self.n)
+        if self.turning:
+            data = known.value("entries", t, q, v)[self.entry]
+        if "motion" in known:
+            rates = -known.value("motion", t, q, v)[:, 1]
+        elif "gap_t" in known:
+            rates = known.value("gap_t", t, q, v)
+        return data, rates
 
     def matrix(self, data: Array) -> Any:
         """J with these entries."""

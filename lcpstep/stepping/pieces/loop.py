@@ -34,7 +34,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.glide import glide
     from lcpstep.stepping.pieces.impulses import zero_speeds
     from lcpstep.stepping.pieces.keep import keep, keep_now
-    from lcpstep.stepping.pieces.settle import endless, settle
+    from lcpstep.stepping.pieces.settle import settle
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import just_after
 
@@ -133,7 +133,7 @@ class Steps(Stepwise):
         code = self.begin_piece(t)
         if code != FINISHED:
             return code
-        if endless(self.plan, self.w):
+        if self.w.stalled > 0.0 or self.w.events > self.plan.per_step:  # without end
             code = settle(self.m, self.plan, self.w, self.record, t)
             return AGAIN if code == FINISHED else code
         code = self.find(t)

@@ -21,7 +21,6 @@ cdef class PolynomialSteps(Steps):
     cdef Py_ssize_t strike(self, double t, Py_ssize_t c) noexcept nogil
 
 
-cdef bint too_short(Plan plan, Work w, double now) noexcept nogil
 @cython.locals(doubtful=bint)
 cdef bint is_off(Plan plan, Work w, Polynomial z) noexcept nogil
 cdef void lose_force(Model m, Plan plan, Work w, Record record, double t, Py_ssize_t c) noexcept nogil

@@ -75,7 +75,8 @@ class PolynomialSteps(Steps):
     def begin_piece(self, t: float) -> int:
         """Accelerations, and which contacts are closed."""
         now = t + self.w.sigma
-        if too_short(self.plan, self.w, now):
+        # Of so short a rest positions cannot tell the ends apart
+        if self.w.end - self.w.sigma <= SAME_TIME * (abs(now) + self.plan.h):
             self.w.sigma = self.w.end
             return AGAIN
         length = min(self.w.end - self.w.sigma, self.plan.longest)
@@ -125,11 +126,6 @@ class PolynomialSteps(Steps):
             lose_force(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
             return FINISHED
         return touch(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
-
-
-def too_short(plan: Plan, w: Work, now: float) -> bool:
-    """Whether the rest of a smooth interval is so short that positions cannot tell its ends apart."""
-    return w.end - w.sigma <= SAME_TIME * (abs(now) + plan.h)
 
 
 def is_off(plan: Plan, w: Work, z: Polynomial) -> bool:

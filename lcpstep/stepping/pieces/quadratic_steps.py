@@ -132,7 +132,10 @@ def stays(m: Model, plan: Plan, w: Work, c: int, t: float, rest: float) -> bool:
 
 def take_in_turn(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool:
     """Impacts of many bodies, one after another, where these can be followed so; whether there were any."""
-    if not (plan.plain and plan.steady and racing(w, record, t)):
+    free = (
+        w.n_c > 1 and w.closed_now == 0 and record.awaited() > t + w.end
+    )  # several bodies, and no state asked for
+    if not (plan.plain and plan.steady and free):
         return False
     done = race(m, plan, w, record, t, w.sigma, w.end, room(plan, w, record))
     if done > 0:
@@ -149,12 +152,6 @@ def room(plan: Plan, w: Work, record: Record) -> int:
     most = left if left < most else most
     left = record.row_capacity - record.row - 4
     return left if left < most else most
-
-
-def racing(w: Work, record: Record, t: float) -> bool:
-    """Whether impacts of several bodies in free flight may be taken in turn, no state being asked for meanwhile."""
-    wanted = record.awaited() <= t + w.end
-    return w.n_c > 1 and w.closed_now == 0 and not wanted
 
 
 def next_forces(m: Model, plan: Plan, w: Work, t: float) -> None:

@@ -3,7 +3,6 @@ from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
-cdef bint endless(Plan plan, Work w) noexcept nogil
 cdef Py_ssize_t settle(Model m, Plan plan, Work w, Record record, double t) noexcept nogil
 cdef bint meet(Model m, Plan plan, Work w, double t, double span) noexcept nogil
 @cython.locals(some=bint, elastic=bint)

@@ -52,11 +52,6 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.times import within
 
 
-def endless(plan: Plan, w: Work) -> bool:
-    """Whether the events of this step must be settled."""
-    return w.stalled > 0.0 or w.events > plan.per_step
-
-
 def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
     """Settle the motion from w.sigma on, with the accelerations of the piece that begins there."""
     n, rest = w.n_q, w.end - w.sigma

@@ -14,9 +14,8 @@ cdef bint turns_at_once(Strides s, Py_ssize_t g) noexcept nogil
 cdef Py_ssize_t attempt(Strides s, double t, double h) noexcept nogil
 cdef Py_ssize_t failed(Strides s) noexcept nogil
 cdef Py_ssize_t pass_by(Strides s, Record record, double tau) noexcept nogil
-@cython.locals(waits=bint)
+@cython.locals(waits=bint, changes=bint)
 cdef Py_ssize_t look_ahead(Strides s, Py_ssize_t c, double h, double tau) noexcept nogil
-cdef bint changes(Strides s, Py_ssize_t c) noexcept nogil
 @cython.locals(put_back=bint)
 cdef void take_over(Strides s, Record record, double t, double tau) noexcept nogil
 @cython.locals(put_back=bint)

@@ -155,16 +155,13 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
         find_standing(s)
         code = decide(s)
         waits = code == DONE and undecided(s)
-        if code != DONE or ahead >= h or (changes(s, c) and not waits):
+        # Another mode, or its load left to others that hold it too
+        changes = s.new_mode[c] != s.mode[c] or s.new_loaded[c] != s.loaded[c]
+        if code != DONE or ahead >= h or (changes and not waits):
             break
         ahead *= FURTHER
     hold_modes(s)  # the old ones, for the rest of the step
     return code
-
-
-def changes(s: Strides, c: int) -> bool:
-    """Whether contact c has another mode by what has been decided, or leaves its load to others that hold it too."""
-    return s.new_mode[c] != s.mode[c] or s.new_loaded[c] != s.loaded[c]
 
 
 def take_over(s: Strides, record: Record, t: float, tau: float) -> None:

@@ -22,4 +22,3 @@ cdef class Strides(Smooth):
 cdef bint verlet(Strides s, double t, double h) noexcept nogil
 @cython.locals(length=double)
 cdef bint classical(Strides s, double t, double h) noexcept nogil
-cdef void arrive(Strides s) noexcept nogil

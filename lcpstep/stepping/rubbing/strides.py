@@ -122,7 +122,7 @@ def verlet(s: Strides, t: float, h: float) -> bool:
     for i in range(n):
         v_new[i] = s.y[n + i] + 0.5 * h * (a[i] + s.arrival[n + i])
         s.arrival[i] = v_new[i]
-    arrive(s)
+    copy(s.arriving, s.multiplier, s.n_r)
     for i in range(s.n_r):
         s.push[i] = 0.5 * h * (s.leaving[i] + s.arriving[i])
     s.evaluations += 1
@@ -149,10 +149,5 @@ def classical(s: Strides, t: float, h: float) -> bool:
     s.evaluations += 4
     if not s.rates(t + h, s.y_new, s.arrival):
         return False
-    arrive(s)
-    return finite(s.y_new, n)
-
-
-def arrive(s: Strides) -> None:
-    """Take note of the forces where a step ends."""
     copy(s.arriving, s.multiplier, s.n_r)
+    return finite(s.y_new, n)

@@ -12,7 +12,7 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.linear import factorise, solve
     from lcpstep.kernels.model import Model
-    from lcpstep.pointers import Doubles, after
+    from lcpstep.pointers import after
     from lcpstep.stepping.constraints.directions import mobilities
     from lcpstep.stepping.theta_method.implicit import REFRESH, compliance
     from lcpstep.stepping.theta_method.moving import Plan, Rows, State
@@ -44,18 +44,13 @@ def rows_at_the_end(m: Model, s: State, c: Rows, n_a: int, t: float) -> None:
 def respond(linear: bool, plan: Plan, s: State, c: Rows, n_k: int) -> None:
     """A^-1 times the directions of the rows that take part, and their mobilities."""
     n, first_joint = s.n_q, c.n_c + c.n_t
-    average(c.J, c.J_start, plan.theta, c.D, c.n_j * n)
+    for i in range(c.n_j * n):
+        c.D[i] = plan.theta * c.J[i] + (1.0 - plan.theta) * c.J_start[i]
     for k in range(n_k):
         i = c.problem.ids[k]
         row = after(c.H, i * n) if i < first_joint else after(c.D, (i - first_joint) * n)
         compliance(linear, plan, s, row, after(plan.X, i * n))
     mobilities(c.H, plan.X, c.problem.ids, n_k, plan.W, c.n, n)
-
-
-def average(J: Doubles, J_start: Doubles, theta: float, D: Doubles, size: int) -> None:
-    """Directions of the joints' forces."""
-    for i in range(size):
-        D[i] = theta * J[i] + (1.0 - theta) * J_start[i]
 
 
 def refit(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:

@@ -20,11 +20,9 @@ cdef class Steps(Stepwise):
     cdef Py_ssize_t move(self) noexcept nogil
 
 
-cdef void begin(Model m, State s, Rows c, Record record, double t, double side) noexcept nogil
 cdef void look(Model m, State s, Rows c, double t) noexcept nogil
 cdef Py_ssize_t end_step(
     Model m, Plan plan, State s, Rows c, Record record, double t, double t_next, Py_ssize_t events
 ) noexcept nogil
-cdef void advance(Model m, State s, Rows c, double t) noexcept nogil
 cdef void measure(Model m, State s, Rows c, double t) noexcept nogil
 cdef void keep_times(double h, State s, Record record, double t, double t_next) noexcept nogil

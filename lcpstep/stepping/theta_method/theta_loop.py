@@ -40,7 +40,11 @@ class Steps(Stepwise):
 
     def begin(self, t: float, side: float) -> None:
         """Forces and gaps of the initial state, which is kept where states are; side: see `start`."""
-        begin(self.m, self.s, self.rows, self.record, t, side)
+        look(self.m, self.s, self.rows, side)
+        if self.record.n_times == 0:
+            self.record.keep(t, 0.0, self.s.q, self.s.v, self.s.impulse)
+        elif self.record.times[0] == t:
+            self.record.keep_awaited(self.s.q, self.s.v, self.s.impulse)
 
     def run(self, t0: float, first: int, last: int, solved: bool) -> int:
         """`take`, called from Python; `solved`: the problem at hand is."""
@@ -76,15 +80,6 @@ class Steps(Stepwise):
         return end_step(self.m, self.plan, self.s, self.rows, self.record, t, t_next, events)
 
 
-def begin(m: Model, s: State, c: Rows, record: Record, t: float, side: float) -> None:
-    """`Steps.begin` as a kernel."""
-    look(m, s, c, side)
-    if record.n_times == 0:
-        record.keep(t, 0.0, s.q, s.v, s.impulse)
-    elif record.times[0] == t:
-        record.keep_awaited(s.q, s.v, s.impulse)
-
-
 def look(m: Model, s: State, c: Rows, t: float) -> None:
     """Forces, gaps and gap velocities of the current state, as a time has them."""
     if m.linear:
@@ -98,24 +93,19 @@ def look(m: Model, s: State, c: Rows, t: float) -> None:
 def end_step(
     m: Model, plan: Plan, s: State, c: Rows, record: Record, t: float, t_next: float, events: int
 ) -> int:
-    """What is kept where a step ends that began after so many events; whether the run goes on."""
+    """The step is taken over, and kept where that is asked for; it began after so many events. Does the run go on?"""
     if record.next_time < record.n_times:
         keep_times(plan.h, s, record, t, t_next)
-    advance(m, s, c, t_next)
+    copy(s.q, s.next_q, s.n_q)
+    copy(s.v, s.next_v, s.n_q)
+    copy(s.force, s.next_force, s.n_q)
+    measure(m, s, c, t_next)
+    s.steps += 1
     if not (finite(s.g, s.n_c) and finite(s.u, s.n_c)):
         return NOT_FINITE
     if (record.every > 0 and record.is_due(s.steps)) or (record.on_events and record.event > events):
         record.keep(t_next, 0.0, s.q, s.v, s.impulse)
     return FINISHED
-
-
-def advance(m: Model, s: State, c: Rows, t: float) -> None:
-    """Take over next_q, next_v; gaps and gap velocities at the new state; one step more."""
-    copy(s.q, s.next_q, s.n_q)
-    copy(s.v, s.next_v, s.n_q)
-    copy(s.force, s.next_force, s.n_q)
-    measure(m, s, c, t)
-    s.steps += 1
 
 
 def measure(m: Model, s: State, c: Rows, t: float) -> None:

@@ -18,7 +18,6 @@ cdef Py_ssize_t step(
     Model m, Plan plan, State s, Rows c, double t, double t_next, bint external, bint solved
 ) noexcept nogil
 cdef void position(Plan plan, State s) noexcept nogil
-cdef void predicted_rates(Model m, Plan plan, State s, Rows c, double t_next) noexcept nogil
 cdef bint tangent_rates(State s, Rows c, double t, double t_next) noexcept nogil
 cdef void free_velocity(Model m, Plan plan, State s, double t_next) noexcept nogil
 @cython.locals(released=bint)

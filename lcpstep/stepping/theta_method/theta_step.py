@@ -142,7 +142,9 @@ def step(
     if c.n > c.n_c:
         take_part(c, n_a)
     if n_a > 0:
-        predicted_rates(m, plan, s, c, t_next)
+        for i in range(s.n_q):  # where the velocity at the start leads to
+            s.next_q[i] = s.q[i] + plan.h * s.v[i]
+        gap_rates(m, t_next, s.next_q, s.v, c.H, c.H_t)
     if c.n_f > 0 and not tangent_rates(s, c, t, t_next):
         return NOT_FINITE
     if c.n_j > 0:
@@ -200,13 +202,6 @@ def position(plan: Plan, s: State) -> None:
     h, theta = plan.h, plan.theta
     for i in range(s.n_q):
         s.next_q[i] = s.q[i] + h * (theta * s.next_v[i] + (1.0 - theta) * s.v[i])
-
-
-def predicted_rates(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> None:
-    """G and g_t at the end of the step, at the position predicted by the velocity of its start."""
-    for i in range(s.n_q):
-        s.next_q[i] = s.q[i] + plan.h * s.v[i]
-    gap_rates(m, t_next, s.next_q, s.v, c.H, c.H_t)
 
 
 def tangent_rates(s: State, c: Rows, t: float, t_next: float) -> bool:
