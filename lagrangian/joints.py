@@ -87,9 +87,9 @@ class Joints(Pickled):
 
     def __post_init__(self) -> None:
         checks.count("n_j", self.n_j)
-        checks.callbacks(self, ("gap", "jacobian"), ("gap_t", "bias"))
         if self.pattern is not None:
             object.__setattr__(self, "pattern", _pattern(self.pattern, self.n_j))
+        checks.callbacks(self, ("gap", "jacobian"), ("gap_t", "bias"))
 
     def as_contacts(self) -> Contacts:
         """The same gaps, with which everything that evaluates contacts evaluates joints; all of G is filled."""

@@ -72,7 +72,7 @@ def test_a_header_cimports_what_it_names_and_no_more(name):
 # --- modules that are merged into others: their functions are written in both files ------------------------------
 
 INLINE = re.compile(r"cdef inline (?:\w+\*? )+(\w+)\((.*)\) noexcept(?: nogil)?:")
-NUMBER = re.compile(r"^    (?:double )?([A-Z_]+) (?:= (-?\d+)|\"(.+)\")$", re.M)
+NUMBER = re.compile(r"(?:[:,]|double) ([A-Z_]+) (?:= (-?\d+)|\"(.+)\")")
 VALUES = [0.0, -0.0, 1.0, -1.0, 0.3, -0.7, 2.5e3, -1e-300, math.inf, -math.inf, math.nan]
 IN_C = {"pointers": {"abs", "max", "min", "bits", "double_of"}}  # C's own; "max(a, b)" has no other arguments
 

@@ -34,7 +34,7 @@ def uncompiled(monkeypatch):
         monkeypatch.setattr(moreau_run, "ContactProblem", plain.coulomb.ContactProblem)
         monkeypatch.setattr(moreau_run, "Rows", plain.moving.Rows)
         monkeypatch.setattr(moreau_run, "State", plain.moving.State)
-        monkeypatch.setattr(moreau_run, "Plan", plain.plan.Plan)
+        monkeypatch.setattr(moreau_run, "Plan", plain.moving.Plan)
         monkeypatch.setattr(moreau_run, "places", plain.extent.places)
         monkeypatch.setattr(moreau_run, "is_stiff", plain.extent.is_stiff)
         monkeypatch.setattr(moreau_run, "constant_rows", plain.responses.constant_rows)
