@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.events.ends import NO_FORCES, STATUS
+from lcpstep.events.codes import NO_FORCES, NO_IMPULSES, STATUS
+from lcpstep.gaps import no_way_out
 from lcpstep.kernels.between import accelerated, by_dense_output, last_rows
 from lcpstep.kernels.tally import Tally
 from lcpstep.recording import Kept, Recorder, States
@@ -114,7 +115,7 @@ class Integrated(EventRun):
     @property
     def closed_ones(self) -> list[int]:
         """The contacts that are closed."""
-        return list(self.system.closed_ones())
+        return list(self.clock.closed_ones())
 
     @property
     def latest(self) -> list[int]:
@@ -149,12 +150,16 @@ class Integrated(EventRun):
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
+        if code == NO_IMPULSES:
+            closed = self.closed_ones
+            words = f"no impulses of the contacts {closed} end their approach"
+            return f"{no_way_out(self.scene, self.now, self.state[0], closed) or words} {self.where}"
         if code == NO_FORCES:
             return f"no forces of the closed contacts {self.closed_ones} keep them from passing {self.where}"
         if code == Status.TOO_MANY_EVENTS:
             return f"{self.bound}; the last at contacts {self.latest}, closed are {self.closed_ones}, {self.where}"
         if code == Status.JOINTS_FAILED:
-            return f"joint {self.system.culprit} contradicts the joints before it {self.where}"
+            return f"joint {self.clock.culprit} contradicts the joints before it {self.where}"
         return f"{super().why(code)}; closed contacts {self.closed_ones}"
 
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from lcpstep.diagnostics import energy
+from lcpstep.events.codes import OPEN, SLIDES, STICKS
 from lcpstep.events.contacts import point
-from lcpstep.events.contacts.codes import OPEN, SLIDES, STICKS
 from lcpstep.events.contacts.run import start
 from lcpstep.events.contacts.smooth import Smooth
 from lcpstep.trajectory import Kind, Trajectory

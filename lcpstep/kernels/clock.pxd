@@ -6,7 +6,7 @@ cdef double RESOLUTION, NOISE, NUDGE
 
 cdef class Clock:
     cdef object corner_array
-    cdef public double t0, t0_rest, rest, low, high, scale, period, last_event, jump
+    cdef public double t0, t0_rest, rest, low, high, t_end, scale, period, last_event, jump
     cdef double* corners
     cdef Py_ssize_t n_corners
     cdef double after(self, double tau) noexcept nogil

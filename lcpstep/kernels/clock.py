@@ -29,7 +29,7 @@ class Clock:
 
     t0, t0_rest, rest    base time, what rounding has taken from it and will take from the next
     low, high            the smooth interval around it; high < low: not known yet
-    scale                a typical time
+    t_end, scale         end of the span; a typical time
     period               of the corners
     last_event           time of it
     jump                 the corner found last that the scene does not name
@@ -43,7 +43,7 @@ class Clock:
         self.corner_array = np.array(corners, dtype=np.float64)
         self.corners, self.n_corners = doubles(self.corner_array), len(self.corner_array)
         self.t0, self.t0_rest, self.rest = t_span[0], 0.0, 0.0
-        self.period, self.last_event = period, -inf
+        self.period, self.last_event, self.t_end = period, -inf, t_span[1]
         self.scale = period if period < inf else t_span[1] - t_span[0]
         self.low, self.high, self.jump = inf, -inf, -inf
 

@@ -9,6 +9,7 @@ cdef Py_ssize_t SOLVED
 cdef class ContactProblem:
     cdef readonly object arrays
     cdef readonly object lists
+    cdef object space
     cdef Doubles mobility, rate, impulse, mu, W, b, z, slow, fast, sum
     cdef Indices ids, carrier
     cdef bint warm

@@ -61,20 +61,22 @@ class ContactProblem:
     def __init__(self, mu: Any, frictional: bool, n: int, warm: bool) -> None:
         n_c = len(mu)
         unknowns = 4 * n_c if frictional else 0
-        numbers = {"mobility": 4 * n_c * n_c, "rate": n, "impulse": 2 * n_c, "W": unknowns * unknowns}
-        numbers["slow"], numbers["fast"], numbers["sum"] = n_c, n_c, 2 * n_c
-        self.arrays = {name: np.zeros(size) for name, size in numbers.items()} | {"mu": mu}
-        self.arrays |= {"b": np.zeros(unknowns), "z": np.zeros(unknowns)}
-        self.lists = np.zeros(n, dtype=np.intp), np.zeros(n_c, dtype=np.intp)
+        self.arrays = {
+            "mobility": np.zeros(4 * n_c * n_c),
+            "rate": np.zeros(n),
+            "impulse": np.zeros(2 * n_c),
+            "mu": mu,
+        }
         self.mobility, self.rate = doubles(self.arrays["mobility"]), doubles(self.arrays["rate"])
         self.impulse, self.mu = doubles(self.arrays["impulse"]), doubles(mu)
-        self.slow, self.sum = doubles(self.arrays["slow"]), doubles(self.arrays["sum"])
-        self.fast = doubles(self.arrays["fast"])
-        self.W, self.b, self.z = (
-            doubles(self.arrays["W"]),
-            doubles(self.arrays["b"]),
-            doubles(self.arrays["z"]),
-        )
+        self.space = np.zeros(unknowns * unknowns + 2 * unknowns + 4 * n_c)
+        self.W = doubles(self.space)
+        self.b = after(self.W, unknowns * unknowns)
+        self.z = after(self.b, unknowns)
+        self.slow = after(self.z, unknowns)
+        self.fast = after(self.slow, n_c)
+        self.sum = after(self.fast, n_c)
+        self.lists = np.zeros(n, dtype=np.intp), np.zeros(n_c, dtype=np.intp)
         self.ids, self.carrier = indices(self.lists[0]), indices(self.lists[1])
         largest = unknowns if unknowns > n_c else n_c
         self.warm, self.work = warm, Workspace(largest if largest > 0 else 1)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, simulate
 from lcpstep.trajectory import Kind
 from tests.models import GRAVITY, ball_on_table, bowl_scene
@@ -125,3 +125,16 @@ def test_dependent_contacts_at_rest_only_push(tolerance):
     assert np.min(motion.impulse) >= 0.0
     borne = np.array(G).T @ motion.impulse.sum(axis=0)
     assert pushed + borne == pytest.approx(m * motion.v[-1], abs=100.0 * tolerance)
+
+
+@pytest.mark.parametrize("rows", [2, 50, 3000])
+@pytest.mark.parametrize("friction", [None, Coulomb(0.0, np.eye(2))], ids=["by parabolas", "by steps"])
+def test_the_end_of_chattering_is_paid_for_however_short_the_rows_are(friction, rows):
+    """Hops that a loose tolerance leaves out: the force pays for the impulse that takes their speed, row by row."""
+    G, force = np.array([[1.0, 0.0], [0.8, 0.6]]), np.array([-81.0, -60.0])
+    contacts = LinearContacts(G, restitution=(0.0, 0.05), friction=friction)
+    scene = Scene(LinearSystem(np.eye(2), force=tuple(force)), (0.0, 0.0), (0.0, 0.05), (0.0, 0.2), contacts)
+    m = simulate(scene, EventDriven(1e-3, 1e-3), keep=np.linspace(0.0, 0.2, rows))
+    np.testing.assert_allclose(m.v[-1], 0.0, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(m.impulse.sum(0) @ G, -m.scene.v0 - 0.2 * force, rtol=1e-12, atol=0)
+    assert np.min(m.impulse) >= 0.0

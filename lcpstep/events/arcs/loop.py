@@ -15,7 +15,7 @@ from typing import Any
 
 import cython
 
-from lcpstep.events.contacts.codes import REVERSE, SLIP, STAYS_CLOSED, STICK_TANGENT
+from lcpstep.events.codes import REVERSE, SLIP, STAYS_CLOSED, STICK_TANGENT
 from lcpstep.events.flight.contact import SLACK
 from lcpstep.kernels.status import DONE
 

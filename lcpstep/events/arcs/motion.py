@@ -37,7 +37,7 @@ class Arc(Clock):
     phi, noise      friction there, over the mass; its rounding, and that of `most`
     end             time after the base at which the arc ends, infinite where it does not within the span
     side            of that end: the direction in which what has stuck will slide
-    now, t_end      time reached, end of the span
+    now             time reached
     stride          longest step between states that are kept by steps
     paid, friction  time after the base up to which impulses are counted; integral of the friction up to there
     place, way : (2,);  q, v : (2,)   q = place + way z;  the state last asked for
@@ -66,7 +66,7 @@ class Arc(Clock):
         self.slip, self.slip_cosine, self.slip_sine, self.belt = line.slip
         self.pull, self.most, self.normal, self.mass = line.pull, line.most, line.normal, line.mass
         self.z, self.dz, self.direction = line.z, line.dz, 0.0
-        self.now, self.t_end, self.stride, self.rtol, self.atol = t_span[0], t_span[1], stride, rtol, atol
+        self.now, self.stride, self.rtol, self.atol = t_span[0], stride, rtol, atol
         self.record, self.tally, self.begun = record, tally, False
         self.end, self.side, self.paid, self.friction = inf, 0.0, 0.0, 0.0
         self.noise = self.phi = self.a = self.line = self.room = self.spring = self.zeta = self.dzeta = 0.0

@@ -11,18 +11,15 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import OPEN
+from lcpstep.events.codes import OPEN
 from lcpstep.kernels.status import DONE, NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.events.contacts.equations import force_noise, measure
-    from lcpstep.events.contacts.held import (
-        accelerate_as_held,
-        accelerate_on_joints,
-    )
     from lcpstep.events.contacts.modes import adopt_modes, decide
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.contacts.surfaces import touching
+    from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints
     from lcpstep.kernels.vectors import clear, product
     from lcpstep.pointers import abs, min
 
@@ -65,7 +62,7 @@ def pulls(s: Rubbing) -> bool:
     for c in range(s.n_c):
         s.tried[c] = s.mode[c]
     some = adopt_modes(s) != DONE
-    accelerate_as_held(s)
+    accelerate_as_held(s.rows)
     noise = force_noise(s)
     for c in range(s.n_c):
         i = s.n_j + c
@@ -78,7 +75,7 @@ def pulls(s: Rubbing) -> bool:
 def foresee(s: Rubbing, t: float, tau: float) -> bool:
     """What the accelerations of the rows, with joints alone, change by from t to t + tau, into `doubt`."""
     n = s.n_q
-    accelerate_on_joints(s)
+    accelerate_on_joints(s.rows)
     for i in range(s.n_r):
         s.doubt[i] = product(s.R, s.a, i, n) + s.bias[i]
     for j in range(n):
@@ -86,7 +83,7 @@ def foresee(s: Rubbing, t: float, tau: float) -> bool:
         s.seen[n + j] = s.v[j] + tau * s.a[j]
     if not measure(s, t + tau, s.seen):
         return False
-    accelerate_on_joints(s)
+    accelerate_on_joints(s.rows)
     for i in range(s.n_r):
         s.doubt[i] = DOUBTFUL * abs(product(s.R, s.a, i, n) + s.bias[i] - s.doubt[i])
     return measure(s, t, s.y)

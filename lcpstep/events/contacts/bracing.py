@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import LEANS, OPEN, SLIDES, STICKS
+from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
 
 if not cython.compiled:
     from lcpstep.events.contacts.equations import force_noise
-    from lcpstep.events.contacts.held import accelerate_as_held, hold_modes
     from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.contacts import accelerate_as_held, hold_modes
     from lcpstep.events.rows.equations import size_of_acceleration
     from lcpstep.events.rows.held import is_held
     from lcpstep.kernels.vectors import product
@@ -41,7 +41,7 @@ def braced(s: Rubbing) -> bool:
         return True
     for way in range(ways):
         choose(s, way)
-        if hold_modes(s) and carries(s, STILL):
+        if hold_modes(s.rows) and carries(s, STILL):
             return True
     return False
 
@@ -64,7 +64,7 @@ def choose(s: Rubbing, way: int) -> None:
 
 def carries(s: Rubbing, inside: float) -> bool:
     """Whether what rests stays at rest by the rows held, with forces so far within the cones, or rounding."""
-    accelerate_as_held(s)
+    accelerate_as_held(s.rows)
     within, noise = True, force_noise(s)
     for c in range(s.n_c):
         i = s.n_j + c

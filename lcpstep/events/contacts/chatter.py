@@ -1,48 +1,51 @@
-"""Chattering that is over, as kernels: contacts whose further impacts stay below the tolerance are closed.
+"""Contacts whose hops no longer matter are closed, as kernels; see `events.rows.chatter`.
 
-Hops under a pressing acceleration alpha accumulate after T = 2 u / (|alpha| (1 - r)); they are left out when no
-higher than the tolerance, and when nothing else happens before T to what the contact is connected with: closed, it
-answers another impact in another way than in flight, its own may throw a contact off that rests, and one that slides
-may stop between them. Closing takes the speed u, with the friction that belongs to it, by an impulse that the contact
-force up to T pays for. Hops as slow as the tolerance are left out too, elastic ones as well, and impacts of contacts
-that nothing presses (inelastic collapse) when they have both a speed and a way below it, together with those of the
-contacts that they alternate with: one that struck another at rest would leave it, and nothing would bring it back
-before the next blow.
-Source: A. Nordmark, P. Piiroinen, Simulation and stability analysis of impacting systems with complete chattering,
-Nonlinear Dynamics 58 (2009).
+The rest of its impacts, summed up, is the impulse that takes the velocity of a contact, with the friction that
+belongs to it, and the forces of the closed contact make up for the rest.
 """
 
 from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import ACCUMULATION, OPEN, SLIDES
+from lcpstep.events.codes import OPEN, SLIDES, STICKS
 
 if not cython.compiled:
     from math import sqrt
 
-    from lcpstep.events.contacts.closing import close, mode_closed
-    from lcpstep.events.contacts.equations import (
+    from lcpstep.events.contacts.equations import measure
+    from lcpstep.events.contacts.held import know_rows
+    from lcpstep.events.contacts.impact import find_free
+    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.chatter import (
+        disturbs,
+        find_over,
+        interrupted,
+        just_opened,
+        meets,
+        passes_on,
+        take_along,
+        tell_over,
+        where_interrupted,
+    )
+    from lcpstep.events.rows.contacts import (
         gap_tolerance,
-        measure,
-        rounding_of_gap,
+        hold_modes,
+        measure_velocities,
+        of_tangent,
         rubs,
         sliding,
-        speed_tolerance,
+        still,
+        take_velocities,
     )
-    from lcpstep.events.contacts.held import accelerate_as_held, hold_modes, know_rows
-    from lcpstep.events.contacts.impact import find_free, still
-    from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.rows.equations import least_effect
-    from lcpstep.events.rows.held import constrain, solve_held
+    from lcpstep.events.rows.held import constrain
+    from lcpstep.events.rows.keep import put_on_account
     from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.quadratic import accumulation, first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear, copy, largest, product
-    from lcpstep.pointers import abs, after, max, min, nan
-
-CHECKED = 1e-10  # of the largest force: a pull that is no rounding
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import abs, after, max, nan
 
 
 def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
@@ -52,29 +55,23 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
     """
     copy(s.a, s.a_free, s.n_q)
     constrain(s.rows, s.a, s.bias)
-    some = False
     for c in range(s.n_c):
-        i = s.n_j + c
-        s.curve[c], s.left[c] = product(s.R, s.a, i, s.n_q) + s.bias[i], -1.0
-    for c in range(s.n_c):
-        if s.mode[c] == OPEN and s.touches[c] == 1:
-            s.left[c] = time_left(s, c, t)
-            some = some or s.left[c] >= 0.0
-    if not some:
+        s.rows.curve[c] = product(s.R, s.a, s.n_j + c, s.n_q) + s.bias[s.n_j + c]
+    if not find_over(s.rows) or not stays_so(s, t):
         return False
-    take_along(s)
-    if disturbs(s):
+    take_along(s.rows)
+    if disturbs(s.rows):
         return False
     for c in range(s.n_c):
-        i = s.n_j + c
-        if s.left[c] >= 0.0:
-            u, alpha = s.velocity[i], s.curve[c]
-            p = max(-alpha * s.left[c] - u, 0.0) / s.W[i * s.n_r + i]
-            s.chatter_end[c] = t + s.left[c]
-            if abs(u) > s.terms[c]:
-                s.clock.log(record, tally, s.chatter_end[c], c, ACCUMULATION, -abs(u), 0.0, p)
+        if s.rows.left[c] >= 0.0:
+            tell_over(s.rows, record, tally, c)
             close(s, c, rests(s, c))
-    join(s)
+    for c in range(
+        s.n_c
+    ):  # the forces decide about those too that the others, closed, have left without speed
+        if just_opened(s.rows, c):
+            s.mode[c] = SLIDES
+    find_free(s)
     return True
 
 
@@ -84,52 +81,48 @@ def rests(s: Rubbing, c: int) -> bool:
     It matters where what slides has less friction than what sticks, and would go on. Not where others hop on.
     """
     i = s.n_j + s.n_c + c
-    if not (rubs(s, c) and s.mu_s[c] > s.mu[c]):
+    if not (rubs(s.rows, c) and s.mu_s[c] > s.mu[c]):
         return False
     pull = abs(product(s.R, s.a, i, s.n_q) + s.bias[i])
     most = sqrt(2.0 * pull * least_effect(s.rows, i, s.q))
-    if abs(sliding(s, c)) > max(most, still(s, i)):
+    if abs(sliding(s.rows, c)) > max(most, still(s.rows, i)):
         return False
-    return pull == 0.0 or not interrupted(s, c, most / pull)
+    return pull == 0.0 or not interrupted(s.rows, c, most / pull)
 
 
-def join(s: Rubbing) -> None:
-    """The forces decide about those too that touch and that the others, closed, have left without speed."""
-    for c in range(s.n_c):
-        if s.mode[c] == OPEN and s.touches[c] == 1 and abs(s.velocity[s.n_j + c]) <= s.terms[c]:
-            s.mode[c] = SLIDES
-    find_free(s)
+def stops_others(s: Rubbing, c: int, T: float) -> bool:
+    """Whether a contact that impacts connect with contact c, and that slides, comes to rest within the time T.
 
-
-def time_left(s: Rubbing, c: int, t: float) -> float:
-    """How long the impacts of contact c that are left out would last, or -1 if they may not be.
-
-    Pressed by alpha < 0 they accumulate after 2 u / (|alpha| (1 - r)), no hop being higher than u^2 / (2 |alpha|).
+    Each impact may set it in motion again: it has less friction than one that slides on. Not where the next one would
+    leave it with sliding that cannot be told from none: stopped by that, it would feed the hops.
     """
-    i = s.n_j + c
-    u, alpha, r = s.velocity[i], s.curve[c], s.model.restitution[c]
-    if abs(u) <= s.terms[c]:  # opened by the forces
-        return -1.0
-    tolerance, slow = gap_tolerance(s, c), abs(u) <= speed_tolerance(s, i)
-    low = alpha < 0.0 and u * u <= -2.0 * alpha * tolerance
-    if slow and low:
-        return 0.0
-    if r == 1.0 or u < 0.0:
-        return -1.0
-    if abs(alpha) * s.since[c] <= s.terms[c]:  # an inelastic collapse
-        return 0.0 if slow and u * s.since[c] <= tolerance and not awaits(s, c) else -1.0
-    if not low:
-        return -1.0
-    T = accumulation(u, alpha, r)
-    if t + T > min(s.clock.high, s.t_end):
-        return -1.0
-    if interrupted(s, c, T) or stops_others(s, c, T):
-        # of hops lower than the rounding of what others are lifted by none is left to be told
-        return 0.0 if u * u <= -2.0 * alpha * rounding_of_gap(s, c) else -1.0
-    change = abs(later(s, c, t, T) - alpha)
-    # the end is then off by T change / |alpha|, in which the gap's terms move by no more than the tolerance
-    speed = max(s.terms[c] / NOISE, -alpha * s.scan_length)
-    return T if change * T * speed <= -alpha * tolerance else -1.0
+    passed_on = passes_on(s.rows, c)
+    for d in range(s.n_c):
+        k, slip = s.n_j + s.n_c + d, sliding(s.rows, d)
+        if d != c and s.mode[d] == SLIDES and rubs(s.rows, d) and (passed_on or meets(s.rows, c, k)):
+            stops = slip * (slip + T * (product(s.R, s.a, k, s.n_q) + s.bias[k])) < 0.0
+            if stops and s.model.restitution[c] * abs(slip) > still(s.rows, k):
+                return True
+    return False
+
+
+def stays_so(s: Rubbing, t: float) -> bool:
+    """Whether any sequence is left to be summed up, of those whose acceleration does not change too much meanwhile.
+
+    The end is then off by T change / |alpha|, in which the gap's terms move by no more than the tolerance.
+    """
+    some = False
+    for c in range(s.n_c):
+        T, alpha = s.rows.left[c], s.rows.curve[c]
+        if T > 0.0 and stops_others(s, c, T):
+            s.rows.left[c] = where_interrupted(s.rows, c)
+        elif T > 0.0:
+            speed = max(s.terms[c] / NOISE, -alpha * s.scan_length)
+            change = abs(later(s, c, t, T) - alpha)
+            if not change * T * speed <= -alpha * gap_tolerance(s.rows, c):
+                s.rows.left[c] = -1.0
+        some = some or s.rows.left[c] >= 0.0
+    return some
 
 
 def later(s: Rubbing, c: int, t: float, T: float) -> float:
@@ -142,154 +135,61 @@ def later(s: Rubbing, c: int, t: float, T: float) -> float:
     if know_rows(s, t + T, s.seen, s.dy):
         curve = product(s.R, after(s.dy, n), i, n) + s.bias[i]
     measure(s, t, s.y)
-    hold_modes(s)
+    hold_modes(s.rows)
     return curve
 
 
-def interrupted(s: Rubbing, c: int, T: float) -> bool:
-    """Whether a contact that impacts connect with contact c closes within the time T."""
-    passed_on = passes_on(s, c)
-    for d in range(s.n_c):
-        if d != c and s.mode[d] == OPEN and (passed_on or meets(s, c, s.n_j + d)):
-            g, u = gap_of(s, d), s.velocity[s.n_j + d]
-            if (g > 0.0 or u > s.terms[d]) and first_zero(g, u, 0.5 * s.curve[d]) < T:
-                return True
-    return False
+def close(s: Rubbing, c: int, at_rest: bool) -> None:
+    """Take the velocity of contact c, which slides on as before, unless that stops it; or its sliding, too."""
+    i = s.n_j + s.n_c + c
+    slip, rough = sliding(s.rows, c), rubs(s.rows, c)
+    s.loaded[c], s.direction[c] = 1, 1.0 if slip >= 0.0 else -1.0
+    s.mode[c] = STICKS if at_rest else s.rows.mode_closed(c)
+    if s.mode[c] == SLIDES and rough and not slides_on(s, i, slip):
+        s.mode[c] = STICKS
+    if not hold_modes(s.rows):  # sliding on would take the others' forces away: in a wedge all come to rest
+        for d in range(s.n_c):
+            s.mode[d] = STICKS if s.mode[d] != OPEN and rubs(s.rows, d) else s.mode[d]
+        hold_modes(s.rows)
+    copy(s.seen, s.v, s.n_q)
+    take_velocities(s.rows)
+    if not at_rest and leaves_cone(s, c):
+        take_back(s, c)
+    put_on_account(s.rows)
+    measure_velocities(s.rows, s.v)
+    find_free(s)
 
 
-def stops_others(s: Rubbing, c: int, T: float) -> bool:
-    """Whether a contact that impacts connect with contact c, and that slides, comes to rest within the time T.
-
-    Each impact may set it in motion again: it has less friction than one that slides on. Not where the next one would
-    leave it with sliding that cannot be told from none: stopped by that, it would feed the hops.
-    """
-    passed_on = passes_on(s, c)
-    for d in range(s.n_c):
-        k, slip = s.n_j + s.n_c + d, sliding(s, d)
-        if d != c and s.mode[d] == SLIDES and rubs(s, d) and (passed_on or meets(s, c, k)):
-            stops = slip * (slip + T * (product(s.R, s.a, k, s.n_q) + s.bias[k])) < 0.0
-            if stops and s.model.restitution[c] * abs(slip) > still(s, k):
-                return True
-    return False
-
-
-def gap_of(s: Rubbing, d: int) -> float:
-    """The gap of open contact d: zero where it touches."""
-    return 0.0 if s.touches[d] == 1 else s.gap[s.n_j + d]
-
-
-def meets(s: Rubbing, c: int, k: int) -> bool:
-    """Whether impulses of contact c, with their friction, change the velocity of row k."""
-    i = s.n_j + c
-    rubbed = rubs(s, c) and s.W[(i + s.n_c) * s.n_r + k] != 0.0
-    return rubbed or s.W[i * s.n_r + k] != 0.0
-
-
-def passes_on(s: Rubbing, c: int) -> bool:
-    """Whether joints or closed contacts pass impulses of contact c on."""
-    found = False
-    for m in range(s.rows.n_held):
-        found = found or meets(s, c, s.rows.row[m])
-    return found
-
-
-def take_along(s: Rubbing) -> None:
-    """Of a collapse that is over those contacts too that are on their way to their next impact in it.
-
-    So are contacts that the forces have just opened: they meet other forces now.
-    """
-    for c in range(s.n_c):
-        if s.left[c] == 0.0 and s.touches[c] == 1:
-            for d in range(s.n_c):
-                if s.left[d] < 0.0 and alternates(s, c, d) and not is_told(s, d):
-                    s.left[d] = 0.0
-    for c in range(s.n_c):
-        if s.mode[c] == OPEN and s.touches[c] == 1 and abs(s.velocity[s.n_j + c]) <= s.terms[c]:
-            s.left[c] = 0.0
-
-
-def awaits(s: Rubbing, c: int) -> bool:
-    """Whether a contact that alternates with contact c in its collapse is still too fast to be closed with it."""
-    fast = False
-    for d in range(s.n_c):
-        fast = fast or (alternates(s, c, d) and is_told(s, d))
-    return fast
-
-
-def is_told(s: Rubbing, d: int) -> bool:
-    """Whether contact d, on its way to an impact, has a speed or a way above the tolerance."""
-    return -s.velocity[s.n_j + d] > speed_tolerance(s, s.n_j + d) or gap_of(s, d) > gap_tolerance(s, d)
-
-
-def alternates(s: Rubbing, c: int, d: int) -> bool:
-    """Whether contact d, which nothing presses, strikes before contact c, which has just struck, does so again."""
-    g, u, since = gap_of(s, d), s.velocity[s.n_j + d], max(s.since[c], s.clock.untold(0.0))
-    if d == c or s.mode[d] != OPEN or not (g > 0.0 and u < 0.0 and g <= -u * since):
+def slides_on(s: Rubbing, i: int, slip: float) -> bool:
+    """Whether what the modes hold can be stopped, and leaves row i its direction of sliding."""
+    if not hold_modes(s.rows):
         return False
-    return abs(s.curve[d]) * since <= s.terms[d] and (passes_on(s, c) or meets(s, c, s.n_j + d))
-
-
-def disturbs(s: Rubbing) -> bool:
-    """Whether the impacts left out would throw a closed contact off, or drive an open one onto its surface.
-
-    The modes are as before.
-    """
-    for c in range(s.n_c):
-        s.tried[c] = s.mode[c]
-        s.mode[c] = mode_closed(s, c) if s.left[c] >= 0.0 else s.mode[c]
-    found = let_go_pulling(s) and (throws_off(s) or drives_others(s))
-    for c in range(s.n_c):
-        s.mode[c] = s.tried[c]
-    hold_modes(s)
-    return found
-
-
-def let_go_pulling(s: Rubbing) -> bool:
-    """Hold the closed contacts; of those just opened by the forces only what those of the others now press.
-
-    One that would have to pull leaves while the others hop, and bears none of the impulses that stop them.
-    """
-    held, pulls = True, True
-    while pulls and held:
-        pulls, held = False, hold_modes(s)
-        accelerate_as_held(s)
-        rounding = CHECKED * largest(s.rows.held, 0.0, s.rows.n_held)
-        for c in range(s.n_c):
-            opened = s.left[c] == 0.0 and abs(s.velocity[s.n_j + c]) <= s.terms[c]
-            if opened and s.multiplier[s.n_j + c] < -rounding and not pulls:
-                s.mode[c], s.left[c], pulls = OPEN, -1.0, True
-    return held
-
-
-def throws_off(s: Rubbing) -> bool:
-    """Whether the impacts left out would throw a closed contact off, of the rows held; their impulses into `held`.
-
-    By hops that the tolerance does not leave out. Held, it would have to pull with the impulse x that, as the stop
-    turns the impacts' effect round, it pushes with. Let go, it leaves at w = x / d, d its entry of the inverse of the
-    rows' matrix, and the force that presses it brings it back with lambda / d: no higher than w^2 d / (2 lambda).
-    """
     copy(s.dv, s.v, s.n_q)
     constrain(s.rows, s.dv, s.rate)
-    for m in range(s.rows.n_held):
-        c = s.rows.row[m] - s.n_j
-        x = s.rows.held[m]
-        if 0 <= c < s.n_c and s.left[c] < 0.0 and x > 0.0:
-            clear(s.change, s.rows.n_held)
-            s.change[m] = 1.0
-            solve_held(s.rows, s.change)
-            force = max(s.multiplier[s.n_j + c], 0.0)
-            low = x * x <= 2.0 * force * s.change[m] * gap_tolerance(s, c)
-            if not low and x > s.terms[c] * s.change[m]:
-                return True
-    return False
+    return (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip > 0.0
 
 
-def drives_others(s: Rubbing) -> bool:
-    """Whether the same impulses would drive an open contact that touches onto its surface; velocities are in `dv`."""
-    for c in range(s.n_c):
-        i = s.n_j + c
-        if s.mode[c] == OPEN and s.touches[c] == 1:
-            u = product(s.R, s.dv, i, s.n_q) + s.rate[i]
-            if u < -speed_tolerance(s, i):
-                return True
-    return False
+def leaves_cone(s: Rubbing, c: int) -> bool:
+    """Whether contact c, just stopped, has more friction at this instant than belongs to what its normal has had."""
+    i, friction = s.n_j + c, of_tangent(s.rows, s.instant, c)
+    normal = s.instant[c] + s.multiplier[i]
+    if s.n_t > 0:
+        friction += s.multiplier[i + s.n_c]
+    return normal < 0.0 or abs(friction) > (1.0 + NOISE) * s.mu_s[c] * normal
+
+
+def take_back(s: Rubbing, c: int) -> None:
+    """Stop contact c from before in another way: of its impact so much that none is left, in its own proportion.
+
+    An impact whose restitution turns the sliding has other friction than the sliding that it leaves; Moreau's law is
+    plastic then. A friction beyond the cone would do work.
+    """
+    normal, friction = s.instant[c], of_tangent(s.rows, s.instant, c)
+    if normal <= 0.0:
+        return
+    mode, direction, s.mode[c] = s.mode[c], s.direction[c], SLIDES
+    s.direction[c] = -friction / (s.mu[c] * normal) if s.mu[c] > 0.0 else direction
+    if hold_modes(s.rows):
+        copy(s.v, s.seen, s.n_q)
+        take_velocities(s.rows)
+    s.mode[c], s.direction[c] = mode, direction

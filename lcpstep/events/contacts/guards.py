@@ -10,25 +10,17 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import LEANS, OPEN, SLIDES, STICKS
+from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
 from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import (
-        force_noise,
-        gap_tolerance,
-        measure_friction,
-        measure_gaps,
-        rounding_of_gap,
-        rubs,
-        share_left,
-        speed_tolerance,
-    )
+    from lcpstep.events.contacts.equations import force_noise, measure_friction, measure_gaps, share_left
     from lcpstep.events.contacts.held import right_hand_side
     from lcpstep.events.contacts.hops import begin_hops, first_landing
     from lcpstep.events.contacts.loose import forget_strays, notice
     from lcpstep.events.contacts.state import GUARDS, Rubbing
     from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
+    from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
     from lcpstep.events.rows.equations import renew_rates, size_of
     from lcpstep.events.rows.held import is_held
     from lcpstep.kernels.clock import NOISE
@@ -76,7 +68,7 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
             continue
         if is_held(s.rows, i) or (s.mode[c] == LEANS and is_held(s.rows, i + s.n_c)):
             s.value[k] = s.multiplier[i]
-        if s.mode[c] == SLIDES and rubs(s, c):
+        if s.mode[c] == SLIDES and rubs(s.rows, c):
             slip = product(s.R, v, i + s.n_c, s.n_q) + s.rate[i + s.n_c]
             s.value[k + 1] = s.direction[c] * slip
         elif s.mode[c] == STICKS:
@@ -99,16 +91,16 @@ def begin_guards(s: Rubbing, t: float) -> bool:
     for c in range(s.n_c):
         k, i = GUARDS * c, s.n_j + c
         if s.mode[c] == OPEN:
-            noise = rounding_of_gap(s, c) + share * no_gap(s, c, s.rise[c], s.bend[c])
+            noise = s.rows.rounding_of_gap(c) + share * no_gap(s, c, s.rise[c], s.bend[c])
             s.band[k] = max(noise, -2.0 * s.value[k])  # deeper than it is now
         else:
             own = s.W[i * s.n_r + i]  # none in the middle of a bowl
-            none = NOISE * share * speed_tolerance(s, i) / own if own > 0.0 else 0.0
+            none = NOISE * share * speed_tolerance(s.rows, i) / own if own > 0.0 else 0.0
             s.band[k] = forces + none
             s.band[k + 1] = s.band[k + 2] = forces * (1.0 + s.mu_s[c]) + none
-            if s.mode[c] == SLIDES and rubs(s, c):
+            if s.mode[c] == SLIDES and rubs(s.rows, c):
                 T = i + s.n_c
-                s.band[k + 1] = NOISE * (size_of(s.rows, T, s.rate[T], s.v) + speed_tolerance(s, T))
+                s.band[k + 1] = NOISE * (size_of(s.rows, T, s.rate[T], s.v) + speed_tolerance(s.rows, T))
         for g in range(k, k + GUARDS):
             s.armed[g] = 1 if s.value[g] > s.band[g] else 0
     return True
@@ -116,7 +108,7 @@ def begin_guards(s: Rubbing, t: float) -> bool:
 
 def no_gap(s: Rubbing, c: int, u: float, alpha: float) -> float:
     """The gap of contact c that is none where all its terms vanish: little beside a hop that begins."""
-    least = NOISE * gap_tolerance(s, c)
+    least = NOISE * gap_tolerance(s.rows, c)
     return min(least, LOW * u * u / -alpha) if u > 0.0 and alpha < 0.0 else least
 
 
@@ -172,7 +164,7 @@ def has(s: Rubbing, g: int) -> bool:
     """Whether the contact of guard g has that guard in its mode; the value of others is OFF."""
     c, which = g // GUARDS, g % GUARDS
     seen = which == 0 and s.lands[c] == NONE
-    return seen or s.mode[c] == STICKS or (which == 1 and s.mode[c] == SLIDES and rubs(s, c))
+    return seen or s.mode[c] == STICKS or (which == 1 and s.mode[c] == SLIDES and rubs(s.rows, c))
 
 
 def stays_clear(s: Rubbing, h: float) -> bool:

@@ -13,20 +13,16 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import OPEN
+from lcpstep.events.codes import OPEN
 
 if not cython.compiled:
     from math import pow, sqrt
 
-    from lcpstep.events.contacts.equations import (
-        gap_tolerance,
-        measure_gaps,
-        rounding_of_gap,
-        speed_tolerance,
-    )
+    from lcpstep.events.contacts.equations import measure_gaps
     from lcpstep.events.contacts.held import know_rows
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.hybrid.roots import NONE
+    from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
     from lcpstep.events.rows.equations import renew_biases, size_of
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.quadratic import first_zero
@@ -141,7 +137,7 @@ def ends_so(s: Rubbing, c: int, tau: float) -> bool:
     s.at(tau / s.length, s.seen)
     measure_gaps(s, s.clock.t0 + tau, s.seen)
     strayed = s.clock.untold(s.length) * abs(s.rate[s.n_j + c])
-    errors = max(rounding_of_gap(s, c) + strayed, gap_tolerance(s, c))
+    errors = max(s.rows.rounding_of_gap(c) + strayed, gap_tolerance(s.rows, c))
     return abs(s.gap[s.n_j + c]) <= UNLIKE * tau * abs(s.rise[c]) + errors
 
 
@@ -223,7 +219,7 @@ def carry(s: Rubbing) -> None:
     for c in range(s.n_c):
         i = s.n_j + c
         u = product(s.R, s.v, i, s.n_q) + s.rate[i]
-        errors = STEADY * size_of(s.rows, i, s.rate[i], s.v) + speed_tolerance(s, i)
+        errors = STEADY * size_of(s.rows, i, s.rate[i], s.v) + speed_tolerance(s.rows, i)
         if s.carried[c] == 1 and abs(u - s.speed[c]) > errors:
             s.carried[c] = 0
     begin_hops(s)

@@ -4,7 +4,6 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
 cdef Py_ssize_t ACCUMULATION, IMPACT, JAM, JUMP, NO_IMPULSES, NOT_FINITE, PAINLEVE_INCONSISTENT, OPEN, SLIDES, STICKS, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
-cdef double STILL
 
 cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef bint strike(Rubbing s, Record record, Tally tally, double t, bint plastic) noexcept nogil
@@ -24,5 +23,4 @@ cdef void strike_with(
 cdef Py_ssize_t jam(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef void find_free(Rubbing s) noexcept nogil
 cdef bint is_free(Rubbing s, Py_ssize_t c) noexcept nogil
-cdef double still(Rubbing s, Py_ssize_t i) noexcept nogil
 cdef void forget_terms(Rubbing s) noexcept nogil

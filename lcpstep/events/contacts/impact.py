@@ -11,26 +11,17 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import ACCUMULATION, IMPACT, JAM, JUMP, OPEN, SLIDES, STICKS
-from lcpstep.events.ends import NO_IMPULSES
+from lcpstep.events.codes import ACCUMULATION, IMPACT, JAM, JUMP, NO_IMPULSES, OPEN, SLIDES, STICKS
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
 
 if not cython.compiled:
-    from lcpstep.events.contacts.cycle import fades, look_back, recurs, sum_up
-    from lcpstep.events.contacts.equations import (
-        apply,
-        measure,
-        measure_velocities,
-        sliding,
-        speed_tolerance,
-    )
-    from lcpstep.events.contacts.held import stop_rows
+    from lcpstep.events.contacts.equations import measure
     from lcpstep.events.contacts.parting import approaches, let_go, rejoin
-    from lcpstep.events.contacts.problem import fill, list_unknowns, row_of
     from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.equations import size_of
+    from lcpstep.events.rows.contacts import measure_velocities, sliding, still, stop_rows
+    from lcpstep.events.rows.cycle import fades, look_back, recurs, sum_up
     from lcpstep.events.rows.held import hold_joints
-    from lcpstep.kernels.clock import NOISE
+    from lcpstep.events.rows.problem import fill, list_unknowns, row_of
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.energetic import strike_in_turn
     from lcpstep.kernels.record import Record
@@ -40,7 +31,6 @@ if not cython.compiled:
     from lcpstep.pointers import abs, after, inf, max, min
 
 ROUNDS = 100_000  # problems of impacts at one instant
-STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
 
 
 def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
@@ -63,20 +53,20 @@ def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
             return BUFFER_FULL
         if tally.events > tally.max_events:
             return TOO_MANY_EVENTS
-        ratio = recurs(s) if s.rounds > 0 else 0.0
+        ratio = recurs(s.rows) if s.rounds > 0 else 0.0
         if ratio >= FOR_EVER:
-            if not fades(s):
+            if not fades(s.rows):
                 return TOO_MANY_EVENTS if can_rest(s) else NO_IMPULSES
         elif ratio > 0.0:
-            sum_up(s, record, tally, t, ratio)
+            sum_up(s.rows, record, tally, ratio)
         else:
             if looks_back(s.rounds):
-                look_back(s)
+                look_back(s.rows)
             if s.rounds > 0 and not s.in_turn and not let_go(s, t):
                 return NOT_FINITE
             s.rounds += 1
             # The last ones of what is held from all sides may leave speeds that but rounding contradicts
-            if not strike(s, record, tally, t, s.rounds > ROUNDS) and not (s.rounds > 1 and fades(s)):
+            if not strike(s, record, tally, t, s.rounds > ROUNDS) and not (s.rounds > 1 and fades(s.rows)):
                 return NO_IMPULSES
     return TOO_MANY_EVENTS
 
@@ -120,7 +110,7 @@ def can_rest(s: Rubbing) -> bool:
 def take_for_none(s: Rubbing, c: int) -> None:
     """What contact c, which sticks, has of a sliding velocity is rounding, unless its obstacle has just jumped."""
     i, T = s.n_c + c, s.n_j + s.n_c + c
-    if abs(s.velocity[T]) <= still(s, T):
+    if abs(s.velocity[T]) <= still(s.rows, T):
         s.terms[i] = max(s.terms[i], abs(s.velocity[T]))
         s.velocity[T] = 0.0
 
@@ -147,8 +137,8 @@ def pose(s: Rubbing) -> tuple[int, int]:
     """The problem of the closed contacts on the joints; how many, and how many have unknown friction."""
     s.coefficients.use(s.problem.mu)
     hold_joints(s.rows)
-    n_a, n_f = list_unknowns(s)
-    fill(s, n_a, n_f)
+    n_a, n_f = list_unknowns(s.rows)
+    fill(s.rows, n_a, n_f)
     return n_a, n_f
 
 
@@ -160,10 +150,10 @@ def strike_with(
     A plastic one stands for impacts without end, and is told as such where the law of a contact is another.
     """
     for a in range(n_a + n_f):
-        apply(s, row_of(s, a, n_a), s.problem.impulse[a])
+        s.rows.push(row_of(s.rows, a, n_a), s.problem.impulse[a])
     hold_joints(s.rows)
-    stop_rows(s)
-    measure_velocities(s, s.v)
+    stop_rows(s.rows)
+    measure_velocities(s.rows, s.v)
     for a in range(n_a):
         c = s.problem.ids[a]
         u = s.velocity[s.n_j + c]
@@ -174,7 +164,7 @@ def strike_with(
             kind = JAM if c == jammed else kind
             before = 0.0 if s.thrown[c] == 1 else s.before[c]  # its obstacle takes it along
             s.clock.log(record, tally, t, c, kind, before, u, s.problem.impulse[a])
-            s.since[c], s.struck[c], s.carried[c] = t - s.struck[c], t, 0
+            s.rows.since[c], s.rows.struck[c], s.carried[c] = t - s.rows.struck[c], t, 0
         s.mode[c], s.thrown[c] = OPEN if u > s.terms[c] else SLIDES, 0
 
 
@@ -208,7 +198,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
         return NOT_FINITE
     if record.full(4 * s.n_c + 4):
         return BUFFER_FULL
-    hit, first = s.culprit, -1
+    hit, first = s.rows.culprit, -1
     clear(s.instant, s.n_r)
     for c in range(s.n_c):
         s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
@@ -227,7 +217,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     s.jams += 1
     strike_with(s, record, tally, t, n_a, n_f, hit, False)
     clear(s.problem.slow, s.n_c)
-    s.next = JUMP
+    s.rows.next = JUMP
     return DONE
 
 
@@ -242,20 +232,15 @@ def find_free(s: Rubbing) -> None:
         if s.n_t > 0 and s.free[c] == 1:
             s.velocity[s.n_j + s.n_c + c] = 0.0
         elif s.free[c] == 0:
-            s.direction[c] = 1.0 if sliding(s, c) > 0.0 else -1.0
+            s.direction[c] = 1.0 if sliding(s.rows, c) > 0.0 else -1.0
 
 
 def is_free(s: Rubbing, c: int) -> bool:
     """Whether contact c has no sliding velocity, between or after the impacts of an instant."""
     if s.n_t == 0:
         return True
-    least = s.terms[s.n_c + c] if s.rounds > 0 else still(s, s.n_j + s.n_c + c)
-    return abs(sliding(s, c)) <= least
-
-
-def still(s: Rubbing, i: int) -> float:
-    """The velocity of row i below which it is zero."""
-    return NOISE * size_of(s.rows, i, s.rate[i], s.v) + STILL * speed_tolerance(s, i)
+    least = s.terms[s.n_c + c] if s.rounds > 0 else still(s.rows, s.n_j + s.n_c + c)
+    return abs(sliding(s.rows, c)) <= least
 
 
 def forget_terms(s: Rubbing) -> None:
@@ -265,4 +250,4 @@ def forget_terms(s: Rubbing) -> None:
     clear(s.terms, 2 * s.n_c)
     for c in range(s.n_c):
         s.parting[c] = s.thrown[c] = 0
-    measure_velocities(s, after(s.y, s.n_q))
+    measure_velocities(s.rows, after(s.y, s.n_q))

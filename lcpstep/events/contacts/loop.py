@@ -11,35 +11,36 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import (
+from lcpstep.events.codes import (
     BEGIN,
     ENTERED,
     JUMP,
     JUMPED,
     LOOKED,
     MOVE,
+    NO_FORCES,
     OPEN,
     SETTLE,
     SLIDES,
     STAYS_CLOSED,
     SWITCH,
 )
-from lcpstep.events.ends import NO_FORCES
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
     from lcpstep.events.contacts.balance import opens_any, reconsider
     from lcpstep.events.contacts.chatter import close_small
-    from lcpstep.events.contacts.equations import add_impulse, measure, measure_velocities
+    from lcpstep.events.contacts.equations import measure
     from lcpstep.events.contacts.guards import begin_guards
-    from lcpstep.events.contacts.impact import forget_terms, jam, jump, still
-    from lcpstep.events.contacts.keep import keep, keep_event
+    from lcpstep.events.contacts.impact import forget_terms, jam, jump
     from lcpstep.events.contacts.loose import find_loose
     from lcpstep.events.contacts.modes import adopt_modes, decide, obey, undecided
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
     from lcpstep.events.contacts.switching import look_at_guards, switch
+    from lcpstep.events.rows.contacts import add_impulse, measure_velocities, still
     from lcpstep.events.rows.jumps import drive_joints, go_beyond
+    from lcpstep.events.rows.keep import keep, keep_event
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -61,15 +62,15 @@ class Course(Events):
 
     def stage(self, goal: int) -> int:
         """Whether there is an event, or the motion goes on."""
-        if self.s.next != MOVE:
+        if self.s.rows.next != MOVE:
             return DUE
-        return AHEAD if self.s.clock.t0 < self.s.t_end and self.tally.steps < goal else ARRIVED
+        return AHEAD if self.s.clock.t0 < self.s.clock.t_end and self.tally.steps < goal else ARRIVED
 
     def happen(self) -> int:
         """The event, or what follows from it; a status."""
         code = yielding(self.s, self.record, self.tally, occur(self.s, self.record, self.tally))
-        if code == BUFFER_FULL and self.s.next == MOVE:  # for the impact of one that jams
-            self.s.next = SETTLE
+        if code == BUFFER_FULL and self.s.rows.next == MOVE:  # for the impact of one that jams
+            self.s.rows.next = SETTLE
         return code
 
     def move(self) -> int:
@@ -78,23 +79,23 @@ class Course(Events):
 
     def keep_now(self) -> None:
         """Keep the state at the base time, called from Python."""
-        keep(self.s, self.record, self.s.clock.t0, self.s.y)
+        keep(self.s.rows, self.record, self.s.clock.t0, self.s.y)
 
 
 def occur(s: Rubbing, record: Record, tally: Tally) -> int:
     """What comes next, at one time; a status."""
-    if s.next == BEGIN:
+    if s.rows.next == BEGIN:
         return begin(s)
-    if s.next == JUMP:
+    if s.rows.next == JUMP:
         code = jump(s, record, tally, s.clock.t0) if come_to_rest(s) else NOT_FINITE
         if code == DONE:
-            s.next = SETTLE
+            s.rows.next = SETTLE
         s.guards = ENTERED if s.guards == ENTERED else JUMPED
         return code
-    if s.next == SWITCH:
-        s.next = JUMP
+    if s.rows.next == SWITCH:
+        s.rows.next = JUMP
         return switch(s, tally)
-    settles, s.next = s.next == SETTLE, MOVE
+    settles, s.rows.next = s.rows.next == SETTLE, MOVE
     return settle(s, record, tally) if settles else follow(s, record, tally)
 
 
@@ -102,7 +103,7 @@ def yielding(s: Rubbing, record: Record, tally: Tally, code: int) -> int:
     """The same status, but for a contact that jams where that ends in an impact; nothing jams without friction."""
     if code == PAINLEVE_INCONSISTENT and s.n_t == 0:
         return NO_FORCES
-    if code == PAINLEVE_INCONSISTENT and s.yields and s.culprit >= 0:
+    if code == PAINLEVE_INCONSISTENT and s.yields and s.rows.culprit >= 0:
         return jam(s, record, tally, s.clock.t0)
     return code
 
@@ -113,7 +114,7 @@ def go_further(s: Rubbing, record: Record, tally: Tally) -> int:
         look_at_guards(s)
         return DONE
     if record.row == 0 and record.n_times == 0:
-        keep(s, record, s.clock.t0, s.y)
+        keep(s.rows, record, s.clock.t0, s.y)
         return DONE
     return turn_corner(s) if s.clock.t0 >= s.clock.high else progress(s, record, tally)
 
@@ -136,7 +137,7 @@ def begin(s: Rubbing) -> int:
         return NOT_FINITE
     find_closed(s)
     forget_terms(s)
-    s.next = JUMP
+    s.rows.next = JUMP
     return DONE
 
 
@@ -152,14 +153,14 @@ def turn_corner(s: Rubbing) -> int:
     forget_terms(s)
     if drive_joints(s.rows, s.v):
         for m in range(s.rows.n_held):
-            add_impulse(s, s.rows.row[m], s.rows.held[m])
-        measure_velocities(s, s.v)
+            add_impulse(s.rows, s.rows.row[m], s.rows.held[m])
+        measure_velocities(s.rows, s.v)
     for c in range(s.n_c):
         i = s.n_j + c
         s.touches[c] = 1 if s.mode[c] != OPEN else 0
-        if s.mode[c] != OPEN and abs(s.velocity[i]) > still(s, i):
+        if s.mode[c] != OPEN and abs(s.velocity[i]) > still(s.rows, i):
             s.mode[c], s.thrown[c] = OPEN, 1
-    s.next = JUMP
+    s.rows.next = JUMP
     return DONE
 
 
@@ -184,7 +185,7 @@ def seek_modes(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
 
     What velocities are known to is that of this instant, and not of states that are looked at further on.
     """
-    longest = min(s.scan_length, min(s.t_end, s.clock.high) - t)
+    longest = min(s.scan_length, min(s.clock.t_end, s.clock.high) - t)
     copy(s.samples, s.terms, 2 * s.n_c)
     code = decide(s)
     if s.rows.n_kept < s.n_j and contradict(s):
@@ -210,12 +211,12 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
     """
     ahead = LOOK_AHEAD * longest
     while 0.0 < ahead <= longest:
-        s.culprit = -1
+        s.rows.culprit = -1
         code = adopt_modes(s)
         if code != DONE:
             return code
         if not (s.rates(t, s.y, s.K) and s.step(t, ahead) and measure(s, t + ahead, s.y_new)):
-            return PAINLEVE_INCONSISTENT if s.culprit >= 0 else NOT_FINITE
+            return PAINLEVE_INCONSISTENT if s.rows.culprit >= 0 else NOT_FINITE
         code = decide(s)
         if code != DONE:
             return code
@@ -272,5 +273,5 @@ def set_out(s: Rubbing, record: Record, t: float) -> int:
         return NOT_FINITE
     for c in range(s.n_c):
         s.touches[c] = 1 if s.mode[c] != OPEN else 0
-    keep_event(s, record, t)
+    keep_event(s.rows, record, t)
     return DONE

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import OPEN, SLIDES
+from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import rubs
     from lcpstep.events.contacts.state import GUARDS, Rubbing
+    from lcpstep.events.rows.contacts import rubs
     from lcpstep.events.rows.equations import renew_biases, size_of_acceleration
     from lcpstep.events.rows.held import is_held
     from lcpstep.kernels.clock import NOISE, RESOLUTION
@@ -41,7 +41,7 @@ def find_loose(s: Rubbing) -> None:
 def is_loose(s: Rubbing, c: int) -> bool:
     """Whether closed contact c has a row at rest that is not held."""
     i = s.n_j + c
-    sticks = s.mode[c] != SLIDES and rubs(s, c)
+    sticks = s.mode[c] != SLIDES and rubs(s.rows, c)
     return not is_held(s.rows, i) or (sticks and not is_held(s.rows, i + s.n_c))
 
 

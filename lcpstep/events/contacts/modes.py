@@ -13,31 +13,27 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import (
+from lcpstep.events.codes import (
     EDGE,
     LEANS,
+    NO_FORCES,
     OPEN,
     SLIDES,
     STICKS,
 )
-from lcpstep.events.ends import NO_FORCES
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 
 if not cython.compiled:
     from lcpstep.events.contacts.bracing import braced
     from lcpstep.events.contacts.equations import force_noise
-    from lcpstep.events.contacts.held import (
-        accelerate_as_held,
-        accelerate_on_joints,
-        hold_modes,
-    )
-    from lcpstep.events.contacts.keep import tell
-    from lcpstep.events.contacts.problem import fill, leave_independent, list_unknowns, row_of, solve_forces
     from lcpstep.events.contacts.several import opened_or_closed
     from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints, hold_modes
     from lcpstep.events.rows.equations import size_of_acceleration
     from lcpstep.events.rows.held import constrain
+    from lcpstep.events.rows.keep import tell
     from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
+    from lcpstep.events.rows.problem import fill, leave_independent, list_unknowns, row_of, solve_forces
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.coulomb import motion_of
     from lcpstep.kernels.record import Record
@@ -57,17 +53,17 @@ def decide(s: Rubbing) -> int:
     """
     for c in range(s.n_c):
         s.new_mode[c], s.new_direction[c], s.new_loaded[c] = OPEN, s.direction[c], 0
-    accelerate_on_joints(s)
+    accelerate_on_joints(s.rows)
     for c in range(s.n_c):
         s.problem.mu[c] = s.mu_s[c] if s.free[c] == 1 else s.mu[c]
     begins = True
     while True:
-        n_a, n_f = list_unknowns(s)
+        n_a, n_f = list_unknowns(s.rows)
         if n_a == 0:
             return DONE
-        fill(s, n_a, n_f)
+        fill(s.rows, n_a, n_f)
         for a in range(n_a + n_f):
-            s.problem.rate[a] = acceleration_on_joints(s.rows, row_of(s, a, n_a), s.a)
+            s.problem.rate[a] = acceleration_on_joints(s.rows, row_of(s.rows, a, n_a), s.a)
         code = find_forces(s, n_a, n_f)
         if code != DONE:
             return code
@@ -77,7 +73,7 @@ def decide(s: Rubbing) -> int:
         if not (s.coefficients.two and begin_to_slide(s, n_a, n_f)):
             read_modes(s, n_a, n_f)
             if n_f == 0:
-                leave_independent(s, n_a)
+                leave_independent(s.rows, n_a, s.new_loaded)
             return DONE
 
 
@@ -114,14 +110,14 @@ def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
         if s.free[c] == 0 and can_bear(s.rows, c) and s.problem.mobility[a * m + a] <= 0.0:
             jams = a
     if jams >= 0:
-        s.culprit = s.problem.ids[jams]
+        s.rows.culprit = s.problem.ids[jams]
         if n_a == 1:
             return PAINLEVE_INCONSISTENT if s.problem.rate[0] < 0.0 else PAINLEVE_INDETERMINATE
-    if not solve_forces(s, n_a, n_f):
+    if not solve_forces(s.rows, n_a, n_f):
         return PAINLEVE_INCONSISTENT if jams >= 0 else NO_FORCES
     other = opened_or_closed(s.problem, n_a) if jams < 0 and n_f == 0 else -1
     if other >= 0:
-        s.culprit = s.problem.ids[other]
+        s.rows.culprit = s.problem.ids[other]
     return PAINLEVE_INDETERMINATE if jams >= 0 or other >= 0 else DONE
 
 
@@ -157,7 +153,7 @@ def undecided(s: Rubbing) -> bool:
 
     It has no normal force, and none would be needed. Where nothing pulls along it either it sticks meanwhile.
     """
-    n_a, n_f = list_unknowns(s)
+    n_a, n_f = list_unknowns(s.rows)
     some = False
     for a in range(n_a):
         if idles(s, a, n_a, n_f):
@@ -184,7 +180,7 @@ def idles(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
 
 def is_nothing(s: Rubbing, a: int, alpha: float, n_a: int, n_f: int) -> bool:
     """Whether an acceleration of unknown a's row is zero as far as it is known."""
-    return abs(alpha) <= NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s, a, n_a)]
+    return abs(alpha) <= NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s.rows, a, n_a)]
 
 
 def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
@@ -194,13 +190,13 @@ def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
 
 def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
     """Whether the contact of unknown a, which carries no force, accelerates away."""
-    known = NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s, a, n_a)]
+    known = NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s.rows, a, n_a)]
     return acceleration(s, a, n_a, n_f) > known
 
 
 def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     """Size of the terms of the same acceleration, their signs left aside."""
-    m, size = n_a + n_f, size_of_acceleration(s.rows, row_of(s, a, n_a), s.a)
+    m, size = n_a + n_f, size_of_acceleration(s.rows, row_of(s.rows, a, n_a), s.a)
     for b in range(m):
         size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
     return size
@@ -219,17 +215,17 @@ def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     """Take over the modes decided, and hold their rows; log what has changed."""
     code = adopt_modes(s)
     if code == DONE:
-        tell(s, record, tally, t)
+        tell(s.rows, record, tally, t)
     return code
 
 
 def adopt_modes(s: Rubbing) -> int:
     """Take over the modes decided, and hold their rows, or others that carry the load where these do not."""
     take_over(s)
-    stands = hold_modes(s)
+    stands = hold_modes(s.rows)
     if stands and not braced(s):
         take_over(s)
-        stands = hold_modes(s)
+        stands = hold_modes(s.rows)
     return DONE if stands else PAINLEVE_INCONSISTENT
 
 
@@ -250,7 +246,7 @@ def stand_alone(s: Rubbing) -> None:
     What is wedged, or stands on three feet, leans with the forces found: with a tangent held a normal may have none.
     """
     for c in range(s.n_c):
-        if s.mode[c] == LEANS and not (hold_modes(s) and is_carried(s, s.n_j + s.n_c + c)):
+        if s.mode[c] == LEANS and not (hold_modes(s.rows) and is_carried(s, s.n_j + s.n_c + c)):
             s.mode[c] = STICKS
 
 
@@ -274,9 +270,9 @@ def stand(s: Rubbing) -> bool:
     """
     for c in range(s.n_c):
         s.mode[c] = STICKS if s.mode[c] == LEANS else s.mode[c]
-    stands = hold_modes(s)
+    stands = hold_modes(s.rows)
     if stands:
-        accelerate_as_held(s)
+        accelerate_as_held(s.rows)
     for c in range(s.n_c):
         i = s.n_j + c
         if s.mode[c] == STICKS:

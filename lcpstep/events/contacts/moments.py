@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import SLIDES
+from lcpstep.events.codes import SLIDES
 from lcpstep.kernels.dop853 import STAGES
 
 if not cython.compiled:
     from lcpstep.events.contacts.guards import UNKNOWN, look, look_at_stage
-    from lcpstep.events.contacts.impact import still
     from lcpstep.events.contacts.state import GUARDS, Rubbing
+    from lcpstep.events.rows.contacts import still
     from lcpstep.events.rows.jumps import find_jump
     from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.vectors import copy
@@ -51,7 +51,7 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
 
 def jumps(s: Rubbing, g: int, tau: float) -> bool:
     """Whether guard g is far from zero where its slope says that it is zero: a force has jumped, or a belt."""
-    least = still(s, s.n_j + s.n_c + g // GUARDS) if of_sliding(s, g) else s.band[g]
+    least = still(s.rows, s.n_j + s.n_c + g // GUARDS) if of_sliding(s, g) else s.band[g]
     return abs(s.value[g]) > least and abs(missing(s, g)) > NOISE * (abs(s.clock.t0) + tau)
 
 

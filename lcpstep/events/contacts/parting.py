@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import OPEN, SLIDES
+from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.kernels.status import DONE
 
 if not cython.compiled:
     from lcpstep.events.contacts.equations import measure
-    from lcpstep.events.contacts.held import hold_modes
     from lcpstep.events.contacts.modes import decide
     from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.contacts import hold_modes
     from lcpstep.events.rows.held import constrain
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import abs
@@ -23,7 +23,7 @@ if not cython.compiled:
 
 def part_before(s: Rubbing) -> None:
     """Mark the contacts that have opened so shortly before an impact that their speed is still but rounding."""
-    hold_modes(s)
+    hold_modes(s.rows)
     copy(s.a, s.a_free, s.n_q)
     constrain(s.rows, s.a, s.bias)
     for c in range(s.n_c):

@@ -9,10 +9,10 @@ from lcpstep.kernels.dop853 import ALL, STAGES
 if not cython.compiled:
     from math import sqrt
 
-    from lcpstep.events.contacts.equations import add_impulse
     from lcpstep.events.contacts.held import right_hand_side
-    from lcpstep.events.contacts.keep import keep
     from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.contacts import add_impulse
+    from lcpstep.events.rows.keep import keep
     from lcpstep.events.rows.projection import project
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
@@ -25,7 +25,7 @@ def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) ->
     tally.steps += 1
     pressed = 0.0
     clear(s.counted, s.n_r)
-    while record.wants(t, t >= s.t_end):
+    while record.wants(t, t >= s.clock.t_end):
         wanted = record.awaited() - s.clock.t0
         press_between(s, pressed, wanted)
         pressed = wanted
@@ -48,10 +48,10 @@ def keep_wanted(s: Rubbing, record: Record, tau: float) -> None:
         copy(s.y, s.seen, 2 * s.n_q)
         if s.rows.n_held > 0:
             project(s.rows, t, s.q, s.v)
-        keep(s, record, t, s.y)
+        keep(s.rows, record, t, s.y)
         copy(s.y, s.dy, 2 * s.n_q)
     else:
-        keep(s, record, t, s.y)
+        keep(s.rows, record, t, s.y)
     record.next_time += 1
 
 
@@ -65,7 +65,7 @@ def press_between(s: Rubbing, a: float, b: float) -> None:
         right_hand_side(s, s.clock.t0 + tau, s.seen, s.dy)
         share = s.weights[k] * (b - a)
         for i in range(s.n_r):
-            add_impulse(s, i, share * s.multiplier[i])
+            add_impulse(s.rows, i, share * s.multiplier[i])
             s.counted[i] = s.counted[i] + share * s.multiplier[i]
 
 
@@ -78,7 +78,7 @@ def press_rest(s: Rubbing, a: float, b: float) -> None:
         return
     late = b - s.length
     for i in range(s.n_r):
-        add_impulse(s, i, s.total[i] + late * s.loads[STAGES * s.n_r + i] - s.counted[i])
+        add_impulse(s.rows, i, s.total[i] + late * s.loads[STAGES * s.n_r + i] - s.counted[i])
 
 
 def sum_up(s: Rubbing) -> bool:

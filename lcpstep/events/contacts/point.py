@@ -11,17 +11,18 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.events.contacts.codes import OPEN, RELATIVE_STEP, SLIDES
+from lcpstep.events.codes import OPEN, RELATIVE_STEP, SLIDES
 from lcpstep.kernels.status import DONE, NOT_FINITE
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.events.contacts.equations import measure, measure_rows
     from lcpstep.events.contacts.guards import look
-    from lcpstep.events.contacts.held import hold_modes, pull, right_hand_side
+    from lcpstep.events.contacts.held import right_hand_side
     from lcpstep.events.contacts.impact import find_free
     from lcpstep.events.contacts.modes import adopt_modes, decide
     from lcpstep.events.contacts.state import GUARDS, Rubbing
+    from lcpstep.events.rows.contacts import hold_modes, pull
     from lcpstep.events.rows.equations import free_motion
     from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import after
@@ -58,7 +59,7 @@ def hold(s: Rubbing, t: float, x: Any, mode: Any, direction: Any) -> bool:
     y = doubles(x)
     if not free_motion(s.rows, t, y, after(y, s.n_q), s.a_free):
         return False
-    return measure_rows(s, t, y) and hold_modes(s)
+    return measure_rows(s, t, y) and hold_modes(s.rows)
 
 
 def field(s: Rubbing, t: float, x: Any) -> Any:
@@ -104,7 +105,7 @@ def forces(s: Rubbing, t: float, x: Any) -> Any:
 
 def pulls(s: Rubbing) -> Any:
     """Friction that comes with each normal force under the modes held, (n_c,): -s mu of a contact that slides."""
-    return np.array([pull(s, s.n_j + c) for c in range(s.n_c)])
+    return np.array([pull(s.rows, s.n_j + c) for c in range(s.n_c)])
 
 
 def rows(s: Rubbing, t: float, x: Any) -> Any:

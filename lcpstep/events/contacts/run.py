@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Scene
+from lcpstep.events.codes import NO_SURFACE
 from lcpstep.events.contacts.loop import Course
 from lcpstep.events.contacts.smooth import Smooth
-from lcpstep.events.ends import NO_IMPULSES, NO_SURFACE
-from lcpstep.events.rows.state import Rows
+from lcpstep.events.rows.contacts import Contacts
 from lcpstep.events.running import FIRST_STEP, QUADRATURE, Integrated
 from lcpstep.events.scan import scan_interval
-from lcpstep.gaps import no_way_out
 from lcpstep.gauss import gauss
 from lcpstep.kernels.function import Functions
 from lcpstep.model import coefficients, models
@@ -38,10 +37,12 @@ def start(
     scan = scan_interval(scene, contacts, 0.0)
     corners = turns(scene, with_belts=True).stops
     n_t = 0 if friction is None else scene.n_c
-    rows = Rows(contacts, joints, scene.n_j, tangents, n_t, (rtol, atol), scene.t_span, corners, scene.period)
+    rows = Contacts(
+        contacts, joints, scene.n_j, tangents, n_t, (rtol, atol), scene.t_span, corners, scene.period
+    )
     s = kind(
         rows, coefficients(scene), tangential, friction is not None and friction.law == "stronge", yields,
-        scene.t_span[1], scan, *gauss(QUADRATURE), *more,
+        scan, *gauss(QUADRATURE), *more,
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan
@@ -73,12 +74,8 @@ class ContactRun(Integrated):
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
-        if code == NO_IMPULSES:
-            closed = self.closed_ones
-            words = f"no impulses of the contacts {closed} end their approach"
-            return f"{no_way_out(self.scene, self.now, self.state[0], closed) or words} {self.where}"
         if code == NO_SURFACE:
-            return f"the obstacle of contact {self.system.culprit} closes in, and leaves no room {self.where}"
+            return f"the obstacle of contact {self.system.rows.culprit} closes in, and leaves no room {self.where}"
         if code in (Status.PAINLEVE_INCONSISTENT, Status.PAINLEVE_INDETERMINATE):
             return f"{self.paradox(code)} {self.where}"
         if code == Status.NOT_FINITE and self.system.coefficients.fault():
@@ -87,7 +84,7 @@ class ContactRun(Integrated):
 
     def paradox(self, code: int) -> str:
         """Painleve's paradox in words: the contact, and the coefficient of friction from which on it occurs."""
-        c = int(self.system.culprit)
+        c = int(self.system.rows.culprit)
         mu, critical = self.system.coefficient(c), self.system.critical_friction(c)
         alone = critical > 0.0 and mu >= (1.0 - 1e-9) * critical
         limit = f" (critical at this state: {critical:.9g})" if alone else " beside what else is held"

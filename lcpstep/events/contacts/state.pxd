@@ -1,6 +1,6 @@
 from lcpstep.events.hybrid.roots cimport Scan
 from lcpstep.events.hybrid.state cimport Motion
-from lcpstep.events.rows.state cimport Rows
+from lcpstep.events.rows.contacts cimport Contacts
 from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.coefficients cimport Coefficients
@@ -11,29 +11,29 @@ from lcpstep.kernels.rungekutta cimport RungeKutta
 from lcpstep.kernels.tally cimport Tally
 from lcpstep.pointers cimport Doubles, Indices
 
-cdef Py_ssize_t ALL, GUARDS, BEGIN, ENTERED, NOT_FINITE
+cdef Py_ssize_t ALL, GUARDS, ENTERED, NOT_FINITE
 
 
 cdef class Rubbing(RungeKutta):
-    cdef object turn, rule, table, per_contact, given, marks, looks, arms
-    cdef readonly Rows rows
+    cdef object rule, table, given, marks, looks, arms
+    cdef readonly Contacts rows
     cdef readonly Clock clock
     cdef readonly Model model
     cdef readonly ContactProblem problem
     cdef readonly Coefficients coefficients
     cdef Scan scan
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_t, n_r, n_nodes
-    cdef public Py_ssize_t next, culprit, jams, rounds
+    cdef public Py_ssize_t jams, rounds
     cdef readonly bint in_turn, yields
-    cdef readonly double t_end, scan_length
+    cdef readonly double scan_length
     cdef Py_ssize_t guard, paced, loose, stalled
     cdef double found, slope, kept_to, shown, delay
-    cdef bint constant, plain, mapped, risen
+    cdef bint constant, plain, risen
     cdef Doubles nodes, weights, q, v, a_free, a, force, dy, seen, dv, R, MR, W, S
     cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, instant, paces
-    cdef Doubles turn_velocity, turn_impulse, shifted_rate, counted, total, loads, doubt, effect
-    cdef Doubles effects, mu, mu_s, slip, tangential, direction, was_direction, new_direction, terms, before
-    cdef Doubles owed, lands, height, rise, bend, speed, struck, since, chatter_end, left, curve, stray
+    cdef Doubles shifted_rate, counted, total, loads, doubt, effect, effects
+    cdef Doubles mu, mu_s, slip, tangential, direction, new_direction, terms, before
+    cdef Doubles lands, height, rise, bend, speed, stray
     cdef Bracket bracket
     cdef readonly Motion watch
     cdef bint hopping, watched, flying

@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import EDGE, JUMP, LEANS, OBEY, OPEN, SETTLE, SLIDES, STICKS, SWITCH
-from lcpstep.events.ends import NO_FORCES, NO_SURFACE
+from lcpstep.events.codes import (
+    EDGE,
+    JUMP,
+    LEANS,
+    NO_FORCES,
+    NO_SURFACE,
+    OBEY,
+    OPEN,
+    SETTLE,
+    SLIDES,
+    STICKS,
+    SWITCH,
+)
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import measure, rounding_of_gap, rubs, sliding
+    from lcpstep.events.contacts.equations import measure
     from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
-    from lcpstep.events.contacts.held import hold_modes
     from lcpstep.events.contacts.hops import carry, find_landings, interrupt, shortest_hop
-    from lcpstep.events.contacts.impact import forget_terms, still
-    from lcpstep.events.contacts.keep import keep
+    from lcpstep.events.contacts.impact import forget_terms
     from lcpstep.events.contacts.loose import first_stray
     from lcpstep.events.contacts.modes import decide, gives, undecided
     from lcpstep.events.contacts.moments import jumps, locate, of_sliding, turns_at_once
@@ -23,7 +32,9 @@ if not cython.compiled:
     from lcpstep.events.contacts.state import GUARDS, Rubbing
     from lcpstep.events.contacts.surfaces import find_coming, find_touching, lift
     from lcpstep.events.contacts.switching import reach_guard, watch
+    from lcpstep.events.rows.contacts import hold_modes, rubs, sliding, still
     from lcpstep.events.rows.jumps import breaks
+    from lcpstep.events.rows.keep import keep
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import product
@@ -40,16 +51,16 @@ def step(s: Rubbing, record: Record, tally: Tally) -> int:
 
     Where no forces hold the rows any more, sliding friction takes them away, or surfaces have become parallel.
     """
-    s.culprit = -1
+    s.rows.culprit = -1
     code = stride(s, record, tally)
-    if code != NOT_FINITE or s.culprit < 0:
+    if code != NOT_FINITE or s.rows.culprit < 0:
         return code
-    return PAINLEVE_INCONSISTENT if rubs(s, s.culprit) else NO_FORCES
+    return PAINLEVE_INCONSISTENT if rubs(s.rows, s.rows.culprit) else NO_FORCES
 
 
 def stride(s: Rubbing, record: Record, tally: Tally) -> int:
     """The same; NOT_FINITE where no forces hold the row of `culprit`."""
-    t0, border = s.clock.t0, min(s.t_end, s.clock.high)
+    t0, border = s.clock.t0, min(s.clock.t_end, s.clock.high)
     if s.rows.n_held != s.paced:
         change_pace(s)
     code = s.take_step(t0, min(min(border - t0, s.scan_length), LONGEST * shortest_hop(s)), s.scan_length)
@@ -83,7 +94,7 @@ def find(s: Rubbing, h: float) -> int:
 
 def complete(s: Rubbing, record: Record, tally: Tally, h: float) -> int:
     """Take over the step of size h, in which nothing happens; a status."""
-    border = min(s.t_end, s.clock.high)
+    border = min(s.clock.t_end, s.clock.high)
     interrupt(s, -1, h)
     take_over(s, record, tally, border if h >= border - s.clock.t0 else s.clock.after(h), h)
     if s.hopping:
@@ -91,13 +102,13 @@ def complete(s: Rubbing, record: Record, tally: Tally, h: float) -> int:
             return NOT_FINITE
         carry(s)
     if record.is_due(tally.steps):
-        keep(s, record, s.clock.t0, s.y)
+        keep(s.rows, record, s.clock.t0, s.y)
     return DONE
 
 
 def complete_to_event(s: Rubbing, record: Record, tally: Tally, h: float) -> int:
     """The step up to the guard found within it, and what comes next; a status."""
-    g, border, code = s.guard, min(s.t_end, s.clock.high), DONE
+    g, border, code = s.guard, min(s.clock.t_end, s.clock.high), DONE
     if of_force(s, g):
         code = look_ahead(s, h)
         if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
@@ -119,8 +130,8 @@ def complete_to_guard(s: Rubbing, record: Record, tally: Tally, h: float) -> int
     """The step up to the guard of modes that acts; a status."""
     tau = reach_guard(s, h)
     interrupt(s, -1, tau)
-    take_over(s, record, tally, min(s.clock.after(tau), min(s.t_end, s.clock.high)), tau)
-    s.next = SWITCH
+    take_over(s, record, tally, min(s.clock.after(tau), min(s.clock.t_end, s.clock.high)), tau)
+    s.rows.next = SWITCH
     return DONE
 
 
@@ -164,7 +175,7 @@ def arrive(s: Rubbing, g: int) -> int:
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
     if of_force(s, g):
-        s.next = OBEY if changes(s) else SETTLE
+        s.rows.next = OBEY if changes(s) else SETTLE
     elif s.mode[c] == OPEN:
         return meet(s, c)
     else:
@@ -208,7 +219,7 @@ def look_ahead(s: Rubbing, h: float) -> int:
         if code != DONE or ahead >= FARTHEST or (not undecided(s) and differ(s)):
             break
         ahead *= FURTHER
-    hold_modes(s)  # the old ones, for the rest of the step
+    hold_modes(s.rows)  # the old ones, for the rest of the step
     return code
 
 
@@ -217,13 +228,13 @@ def meet(s: Rubbing, c: int) -> int:
     find_touching(s)
     find_coming(s, c)
     if not lift(s, c):
-        s.culprit = c
+        s.rows.culprit = c
         return NO_SURFACE
     s.touches[c] = 1
     forget_terms(s)
     if not s.in_turn:
         part_before(s)
-    s.next = JUMP
+    s.rows.next = JUMP
     return DONE
 
 
@@ -233,7 +244,7 @@ def stop(s: Rubbing, c: int) -> None:
     find_standing(s)
     s.free[c] = 1
     stop_with(s, c)
-    s.next = SETTLE
+    s.rows.next = SETTLE
 
 
 def land_with(s: Rubbing) -> None:
@@ -243,8 +254,8 @@ def land_with(s: Rubbing) -> None:
     """
     for d in range(s.n_c):
         i = s.n_j + d
-        lies = s.mode[d] == OPEN and s.gap[i] <= rounding_of_gap(s, d)
-        if lies and abs(s.velocity[i]) <= s.terms[d] and abs(sliding(s, d)) <= still(s, i + s.n_c):
+        lies = s.mode[d] == OPEN and s.gap[i] <= s.rows.rounding_of_gap(d)
+        if lies and abs(s.velocity[i]) <= s.terms[d] and abs(sliding(s.rows, d)) <= still(s.rows, i + s.n_c):
             s.mode[d] = SLIDES
 
 
@@ -261,7 +272,7 @@ def stop_with(s: Rubbing, c: int) -> None:
     for d in range(s.n_c):
         k = s.n_j + s.n_c + d
         with_it = s.velocity[i] * product(s.R, s.dv, k, s.n_q) / own
-        if abs(s.velocity[k] - with_it) <= still(s, k) + EDGE * abs(with_it):
+        if abs(s.velocity[k] - with_it) <= still(s.rows, k) + EDGE * abs(with_it):
             s.free[d] = 1
 
 
@@ -272,4 +283,4 @@ def find_standing(s: Rubbing) -> None:
     """
     for c in range(s.n_c):
         rests = s.n_t == 0 or s.mode[c] == STICKS or s.mode[c] == LEANS
-        s.free[c] = 1 if rests or abs(sliding(s, c)) <= still(s, s.n_j + s.n_c + c) else 0
+        s.free[c] = 1 if rests or abs(sliding(s.rows, c)) <= still(s.rows, s.n_j + s.n_c + c) else 0

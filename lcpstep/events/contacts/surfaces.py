@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import OPEN
+from lcpstep.events.codes import OPEN
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import (
-        gap_tolerance,
-        measure,
-        rounding_of_gap,
-        share_left,
-        speed_tolerance,
-    )
+    from lcpstep.events.contacts.equations import measure, share_left
     from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
     from lcpstep.events.rows.held import constrain, contradiction, parted
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.dynamics import gap_rates, gaps
@@ -31,7 +26,7 @@ LATE = 8.0  # roundings of a time: what two events must be apart to be told from
 def contradict(s: Rubbing) -> bool:
     """Whether joints left out ask for another acceleration than the joints held leave, in `a`; `culprit`."""
     i = contradiction(s.rows, s.a)
-    s.culprit = i if i >= 0 else s.culprit
+    s.rows.culprit = i if i >= 0 else s.rows.culprit
     return i >= 0
 
 
@@ -39,7 +34,7 @@ def come_apart(s: Rubbing) -> bool:
     """Whether a joint left out is no longer closed at the base state; `culprit`."""
     gaps(s.rows.joints, s.clock.t0, s.q, s.v, s.gap)
     i = parted(s.rows, s.gap, s.q)
-    s.culprit = i if i >= 0 else s.culprit
+    s.rows.culprit = i if i >= 0 else s.rows.culprit
     return i >= 0
 
 
@@ -126,7 +121,7 @@ def touching(s: Rubbing, c: int) -> float:
 def nearly(s: Rubbing, c: int, share: float) -> float:
     """The same by what is left of the motion, as a share of the tolerance."""
     late = LATE * RESOLUTION * abs(s.clock.t0) * abs(s.velocity[s.n_j + c])
-    return rounding_of_gap(s, c) + TOGETHER * share * gap_tolerance(s, c) + late
+    return s.rows.rounding_of_gap(c) + TOGETHER * share * gap_tolerance(s.rows, c) + late
 
 
 def find_closed(s: Rubbing) -> None:
@@ -136,8 +131,8 @@ def find_closed(s: Rubbing) -> None:
     beyond.
     """
     for c in range(s.n_c):
-        g, still = s.gap[s.n_j + c], abs(s.velocity[s.n_j + c]) <= speed_tolerance(s, s.n_j + c)
-        s.touches[c] = 1 if g <= rounding_of_gap(s, c) or (still and g <= gap_tolerance(s, c)) else 0
+        g, still = s.gap[s.n_j + c], abs(s.velocity[s.n_j + c]) <= speed_tolerance(s.rows, s.n_j + c)
+        s.touches[c] = 1 if g <= s.rows.rounding_of_gap(c) or (still and g <= gap_tolerance(s.rows, c)) else 0
 
 
 def find_touching(s: Rubbing) -> None:
@@ -155,6 +150,6 @@ def find_coming(s: Rubbing, c: int) -> None:
     u, share = s.velocity[s.n_j + c], share_left(s)
     moment = nearly(s, c, share) / -u if u < 0.0 else 0.0
     for d in range(s.n_c):
-        way = min(-s.velocity[s.n_j + d] * moment, share * gap_tolerance(s, d))
+        way = min(-s.velocity[s.n_j + d] * moment, share * gap_tolerance(s.rows, d))
         if s.gap[s.n_j + d] <= way:
             s.touches[d] = 1

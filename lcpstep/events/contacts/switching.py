@@ -17,8 +17,7 @@ from typing import Any
 
 import cython
 
-from lcpstep.events.contacts.codes import ENTERED, JUMPED, LOOKED, OPEN, SWITCH
-from lcpstep.events.ends import INSIDE
+from lcpstep.events.codes import ENTERED, INSIDE, JUMPED, LOOKED, OPEN, SWITCH
 from lcpstep.kernels.status import (
     BUFFER_FULL,
     DONE,
@@ -29,13 +28,14 @@ from lcpstep.kernels.status import (
 )
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import gap_tolerance, measure, rounding_of_gap
+    from lcpstep.events.contacts.equations import measure
     from lcpstep.events.contacts.impact import forget_terms
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.contacts.surfaces import find_closed
     from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
     from lcpstep.events.hybrid.loop import MAX_STALLED, enter, leave
     from lcpstep.events.hybrid.state import Motion
+    from lcpstep.events.rows.contacts import gap_tolerance
     from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import Doubles, max, min
 
@@ -70,7 +70,7 @@ def watch(s: Rubbing, h: float, end: float) -> int:
     s.watch.culprit = -1
     if not end > 0.0:
         return DONE
-    s.watch.now, s.watch.t_end = s.clock.t0, min(s.t_end, s.clock.high)
+    s.watch.now, s.watch.t_end = s.clock.t0, min(s.clock.t_end, s.clock.high)
     k, at, slope, curvature = find(s.watch, h, end)
     if k == UNKNOWN:
         return NOT_FINITE
@@ -98,14 +98,14 @@ def look_at_guards(s: Rubbing) -> None:
     s.watch.culprit = enter(s.watch, -1, s.guards == JUMPED)
     s.guards = LOOKED
     if s.watch.culprit >= 0:
-        s.next = SWITCH
+        s.rows.next = SWITCH
 
 
 def switch(s: Rubbing, tally: Tally) -> int:
     """The guard acts at the base: log, reset, new mode; contacts closed that stay so are found by `jump`."""
     k = s.watch.culprit
     if s.watch.switches >= s.watch.log_capacity:
-        s.next = SWITCH
+        s.rows.next = SWITCH
         return BUFFER_FULL
     s.watch.now, s.guards = s.clock.t0, ENTERED
     leave(s.watch, k)
@@ -126,8 +126,8 @@ def place(s: Rubbing, moved: bool) -> int:
         s.touches[c] = 1 if s.mode[c] != OPEN else 0
         if moved:
             s.mode[c], s.carried[c] = OPEN, 0
-            if s.gap[s.n_j + c] < -max(rounding_of_gap(s, c), gap_tolerance(s, c)):
-                s.culprit = c
+            if s.gap[s.n_j + c] < -max(s.rows.rounding_of_gap(c), gap_tolerance(s.rows, c)):
+                s.rows.culprit = c
                 return INSIDE
     if moved:
         find_closed(s)

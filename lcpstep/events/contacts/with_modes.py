@@ -12,9 +12,9 @@ import numpy as np
 from lagrangian import HybridScene, Scene
 from lagrangian.mechanical import mechanics
 from lcpstep.culprits import hybrid_culprit
+from lcpstep.events.codes import INSIDE
 from lcpstep.events.contacts.run import ContactRun
 from lcpstep.events.contacts.switching import Watched
-from lcpstep.events.ends import INSIDE
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.run import SWITCHES, switch_log, undecided
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
@@ -80,7 +80,7 @@ class RunWithModes(ContactRun):
         if code == INSIDE:
             return (
                 f"the reset of the switch to mode {self.mode!r} leads inside the obstacle of contact "
-                f"{self.system.culprit} {self.where}"
+                f"{self.system.rows.culprit} {self.where}"
             )
         if code == Status.NOT_FINITE and not self.system.coefficients.fault():
             return f"{hybrid_culprit(self.modes, self.mode)} {self.where}"

@@ -35,7 +35,7 @@ class Flight(Clock):
     delta, w2, f0, X, Y, Omega, fc, fs   of the equation of motion and of its steady oscillation, see `oscillator`
     contact, G, offset, r, response      whether there is an obstacle; its gap; restitution; G M^-1 G^T
     frame, motion                        functions: c, c', c'' and s, s', s''
-    t_end, scan, rtol, atol              end of the span; longest interval of the scan; tolerances
+    scan, rtol, atol                     longest interval of the scan; tolerances
     clear, bend     above the first, G times the absolute position is clear of the obstacle at all times; the second
         bounds the part of the gap acceleration that comes from frame and obstacle
     size, rate      how large the positions are of which the gap is the difference, and the velocities of what moves

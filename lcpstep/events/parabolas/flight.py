@@ -8,15 +8,16 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.codes import JUMP, OPEN
+
 if not cython.compiled:
-    from lcpstep.events.parabolas.keep import keep, keep_wanted
-    from lcpstep.events.parabolas.motion import press, rebase, state_at
-    from lcpstep.events.parabolas.state import JUMP, Mechanism
+    from lcpstep.events.parabolas.state import Mechanism
     from lcpstep.events.rows.held import push_by_change
+    from lcpstep.events.rows.keep import keep
     from lcpstep.kernels.quadratic import first_zero
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import largest, product
+    from lcpstep.kernels.vectors import copy, largest, product
     from lcpstep.pointers import abs, max, min
 
 LARGE = 1e-6  # of the largest coordinate: what difference of coordinates has digits enough
@@ -24,11 +25,11 @@ LARGE = 1e-6  # of the largest coordinate: what difference of coordinates has di
 
 def fly(s: Mechanism, record: Record, tally: Tally) -> None:
     """Constant acceleration up to the next contact, or to the end of the span."""
-    n_c, border = s.n_c, s.t_end - s.t0
+    n_c, n_j, border = s.n_c, s.n_j, s.t_end - s.t0
     tau, meets = border, -1
     for c in range(n_c):
-        if s.contact.closed[c] == 0:
-            root = first_zero(s.contact.gap[c], s.contact.speed[c], 0.5 * s.contact.curve[c])
+        if s.mode[c] == OPEN:
+            root = first_zero(s.gap[n_j + c], s.velocity[n_j + c], 0.5 * s.curve[c])
             if root < tau:
                 tau, meets = root, c
     t = s.t_end if meets < 0 else min(s.after(tau), s.t_end)
@@ -39,24 +40,47 @@ def fly(s: Mechanism, record: Record, tally: Tally) -> None:
         wanted = record.awaited() - s.t0
         press(s, wanted - pressed)
         pressed = wanted
-        keep_wanted(s, record)
+        state_at(s, wanted)
+        keep(s, record, record.awaited(), s.q)
+        record.next_time += 1
     press(s, tau - pressed)
     state_at(s, tau)
     record.store(s.a, tau)
     for c in range(n_c):
-        if s.contact.closed[c] == 0:
-            u, alpha = s.contact.speed[c], s.contact.curve[c]
-            s.contact.gap[c] = max(0.0, s.contact.gap[c] + tau * (u + 0.5 * alpha * tau))
-            s.contact.speed[c] = u + alpha * tau
+        if s.mode[c] == OPEN:
+            i, alpha = n_j + c, s.curve[c]
+            s.gap[i] = max(0.0, s.gap[i] + tau * (s.velocity[i] + 0.5 * alpha * tau))
+            s.velocity[i] = s.velocity[i] + alpha * tau
     rebase(s, t)
     if meets < 0:
         if record.is_due(tally.steps):
-            keep(s, record, t)
+            keep(s, record, t, s.q)
         return
-    s.contact.gap[meets] = 0.0
+    s.gap[n_j + meets] = 0.0
     if tau == 0.0:
         tally.stalled += 1
     s.next = JUMP
+
+
+def rebase(s: Mechanism, t: float) -> None:
+    """Begin a new piece at time t with the state q, v."""
+    copy(s.q0, s.q, 2 * s.n_q)
+    s.start_at(t)
+
+
+def state_at(s: Mechanism, tau: float) -> None:
+    """State q, v at the time tau after the base."""
+    a = s.a
+    for j in range(s.n_q):
+        s.q[j] = s.q0[j] + tau * (s.v0[j] + 0.5 * tau * a[j])
+        s.v[j] = s.v0[j] + tau * a[j]
+
+
+def press(s: Mechanism, tau: float) -> None:
+    """Add the impulses of the forces over the time tau."""
+    for i in range(s.n_r):
+        k = i - s.n_j if i >= s.n_j else s.n_c + i
+        s.impulse[k] = s.impulse[k] + s.multiplier[i] * tau
 
 
 def synchronise(s: Mechanism) -> None:
@@ -67,21 +91,21 @@ def synchronise(s: Mechanism) -> None:
     n_j, q, v = s.n_j, s.q, s.v
     length, speed = largest(q, 0.0, s.n_q), largest(v, 0.0, s.n_q)
     for c in range(s.n_c):
-        if s.contact.synchronous[c] == 0.0 and s.contact.closed[c] == 0:
-            s.contact.synchronous[c] = 1.0
+        if s.synchronous[c] == 0.0 and s.mode[c] == OPEN:
+            s.synchronous[c] = 1.0
             g, u = product(s.R, q, n_j + c, s.n_q) + s.model.offset[c], product(s.R, v, n_j + c, s.n_q)
             if g > LARGE * length:
-                s.contact.gap[c] = g
+                s.gap[n_j + c] = g
             if abs(u) > LARGE * speed:
-                s.contact.speed[c] = u
+                s.velocity[n_j + c] = u
 
 
 def polish(s: Mechanism) -> None:
     """Take from q, v what rounding has left of the gaps and speeds that are zero."""
-    k, n_j = s.n_held, s.n_j
+    n_j = s.n_j
     for turn in range(4):
         x = s.q if turn < 2 else s.v
-        for m in range(k):
+        for m in range(s.n_held):
             i = s.row[m]
             s.change[m] = -product(s.R, x, i, s.n_q)
             if turn < 2:

@@ -9,25 +9,25 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.ends import NO_FORCES
+from lcpstep.events.codes import NO_FORCES, OPEN
 from lcpstep.kernels.status import DONE, JOINTS_FAILED
 
 if not cython.compiled:
-    from lcpstep.events.parabolas.held import (
-        accelerate,
-        joints_own,
-        note,
-    )
-    from lcpstep.events.parabolas.problem import CHECKED, solve_contacts
     from lcpstep.events.parabolas.state import Mechanism
+    from lcpstep.events.rows.chatter import CHECKED
+    from lcpstep.events.rows.contacts import accelerate_on_joints, hold_modes, list_multipliers
     from lcpstep.events.rows.equations import size_of, size_of_acceleration
-    from lcpstep.events.rows.held import constrain, contradiction, hold, hold_joints, solve_held
-    from lcpstep.events.rows.on_joints import acceleration_on_joints
+    from lcpstep.events.rows.held import balance, constrain, contradiction, hold, hold_joints, solve_held
+    from lcpstep.events.rows.loads import unload
+    from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
+    from lcpstep.events.rows.problem import fill
     from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.vectors import copy, largest, product
-    from lcpstep.pointers import abs
+    from lcpstep.kernels.coulomb import solve_contacts
+    from lcpstep.kernels.vectors import clear, copy, largest, product
+    from lcpstep.pointers import abs, after
 
 PASSES = 1e-12  # of the terms of a gap acceleration: one into the surface that is no rounding
+DRIFT = 1e-9  # the same: one that the rows held do not keep at zero
 
 
 def contact_forces(s: Mechanism) -> int:
@@ -35,34 +35,72 @@ def contact_forces(s: Mechanism) -> int:
 
     The acceleration is left in `a`, gap accelerations in `curve`, forces in `multiplier`.
     """
-    n_c, n_j, a = s.n_c, s.n_j, s.a
-    hold_joints(s)
-    copy(a, s.a_free, s.n_q)
-    constrain(s, a, s.bias)
+    n_j, solved = s.n_j, True
+    accelerate_on_joints(s)
     if n_j > 0:
-        s.culprit = contradiction(s, a)
+        s.culprit = contradiction(s, s.a)
         if s.culprit >= 0:
             return JOINTS_FAILED
     s.n_members = 0
-    for c in range(n_c):
-        s.contact.loaded[c] = 0
-        s.contact.curve[c] = product(s.R, a, n_j + c, s.n_q) + s.contact.bias[c]
-        s.contact.multiplier[c] = 0.0
-        if s.contact.closed[c] == 1 and not joints_own(s, c):
-            s.contact.member[s.n_members] = c
-            s.contact.b[s.n_members] = acceleration_on_joints(s, n_j + c, a)
-            s.contact.noise[s.n_members] = 0.5 * NOISE * size_of(s, s.n_j + c, s.contact.bias[c], s.a_free)
+    for c in range(s.n_c):
+        s.loaded[c] = 0
+        if s.mode[c] != OPEN and not joints_own(s, c):
+            s.problem.ids[s.n_members] = c
+            s.problem.rate[s.n_members] = acceleration_on_joints(s, n_j + c, s.a)
+            s.lift[s.n_members] = 0.5 * NOISE * size_of(s, n_j + c, 0.0, s.a_free)
             s.n_members += 1
-    solved = True
     if s.n_members > 0:
-        solved = solve_contacts(s)
+        solved = solve_members(s)
         if solved:
             open_contacts(s)
-            unload(s)
-        accelerate(s)
-    else:
-        note(s, a)
+            unload(s, after(s.multiplier, s.n_j), s.loaded, s.n_c)
+        copy(s.a, s.a_free, s.n_q)
+        hold_modes(s)
+        constrain(s, s.a, s.bias)
+        balance(s, s.a)
+    note(s)
     return DONE if solved or presses(s) else NO_FORCES
+
+
+def joints_own(s: Mechanism, c: int) -> bool:
+    """Whether the joints, which must have been held, leave nothing of the row of contact c: it bears nothing."""
+    return s.n_j > 0 and not can_bear(s, c)
+
+
+def solve_members(s: Mechanism) -> bool:
+    """Solve the members' problem with `rate`; impulses or forces, at least zero, and who carries one.
+
+    Opposite contacts can make it a problem without an answer by as little as rounding; then `rate` is lifted by it.
+    Where the solver fails (the matrix has lost too many digits), all that could are said to carry one, which is zero:
+    an answer to be checked.
+    """
+    k, found = s.n_members, s.problem.impulse
+    fill(s, k, 0)
+    solved = solve_contacts(s.problem, k, 0)
+    if not solved:
+        for a in range(k):
+            s.problem.rate[a] = s.problem.rate[a] + s.lift[a]
+        solved = solve_contacts(s.problem, k, 0)
+    if not solved:
+        clear(found, k)
+    for a in range(k):
+        s.loaded[s.problem.ids[a]] = 1 if found[a] > 0.0 or not solved else 0
+    return solved
+
+
+def note(s: Mechanism) -> None:
+    """Multipliers of the rows held, and the gap accelerations of all contacts.
+
+    Closed contacts whose rows depend on those held are kept by these.
+    """
+    list_multipliers(s)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        alpha = product(s.R, s.a, i, s.n_q)
+        kept = s.mode[c] != OPEN and (
+            s.multiplier[i] != 0.0 or abs(alpha) <= DRIFT * size_of_acceleration(s, i, s.a)
+        )
+        s.curve[c] = 0.0 if kept else alpha
 
 
 def stands(s: Mechanism) -> bool:
@@ -71,11 +109,11 @@ def stands(s: Mechanism) -> bool:
     Rows that rounding has dropped bear no load: what has opened by the force of such a contact would close again at
     once, for ever.
     """
-    most = largest(s.contact.multiplier, 0.0, s.n_c)
+    most = largest(after(s.multiplier, s.n_j), 0.0, s.n_c)
     for c in range(s.n_c):
-        if s.contact.multiplier[c] < -CHECKED * most:
+        if s.multiplier[s.n_j + c] < -CHECKED * most:
             return False
-        touches = s.contact.closed[c] == 1 or (s.contact.gap[c] == 0.0 and s.contact.speed[c] == 0.0)
+        touches = s.mode[c] != OPEN or (s.gap[s.n_j + c] == 0.0 and s.velocity[s.n_j + c] == 0.0)
         if touches and enters(s, c):
             return False
     return True
@@ -84,7 +122,7 @@ def stands(s: Mechanism) -> bool:
 def enters(s: Mechanism, c: int) -> bool:
     """Whether contact c accelerates into its surface, by more than rounding."""
     i = s.n_j + c
-    alpha = product(s.R, s.a, i, s.n_q) + s.contact.bias[c]
+    alpha = product(s.R, s.a, i, s.n_q)
     return alpha < 0.0 and alpha < -PASSES * size_of_acceleration(s, i, s.a)
 
 
@@ -93,10 +131,10 @@ def presses(s: Mechanism) -> bool:
     a, most = s.a, largest(s.held, 0.0, s.n_held)
     size = largest(s.a_free, largest(a, 0.0, s.n_q), s.n_q)
     for c in range(s.n_c):
-        if s.contact.multiplier[c] < -CHECKED * most:
+        if s.multiplier[s.n_j + c] < -CHECKED * most:
             return False
         i = s.n_j + c
-        if s.contact.closed[c] == 1 and product(s.R, a, i, s.n_q) + s.contact.bias[c] < -CHECKED * size:
+        if s.mode[c] != OPEN and product(s.R, a, i, s.n_q) < -CHECKED * size:
             return False
     return True
 
@@ -105,15 +143,15 @@ def open_contacts(s: Mechanism) -> None:
     """Of the members, mark those that carry a force, and open those that accelerate away from the surface."""
     k = s.n_members
     for m in range(k):
-        c, alpha = s.contact.member[m], s.contact.b[m]
-        size = size_of(s, s.n_j + c, s.contact.bias[c], s.a_free)
+        c, alpha = s.problem.ids[m], s.problem.rate[m]
+        size = size_of(s, s.n_j + c, 0.0, s.a_free)
         for b in range(k):
-            alpha += s.W[m * k + b] * s.contact.z[b]
-            size += abs(s.W[m * k + b] * s.contact.z[b])
-        if s.contact.z[m] > 0.0:
-            s.contact.loaded[c], s.contact.multiplier[c] = 1, s.contact.z[m]
+            alpha += s.problem.mobility[m * k + b] * s.problem.impulse[b]
+            size += abs(s.problem.mobility[m * k + b] * s.problem.impulse[b])
+        if s.problem.impulse[m] > 0.0:
+            s.loaded[c], s.multiplier[s.n_j + c] = 1, s.problem.impulse[m]
         elif alpha > NOISE * size and alpha > NOISE * passed_on(s, c):
-            s.contact.closed[c] = 0
+            s.mode[c] = OPEN
 
 
 def passed_on(s: Mechanism, c: int) -> float:
@@ -121,48 +159,18 @@ def passed_on(s: Mechanism, c: int) -> float:
 
     What rounding leaves of those held at zero, two rows that are nearly parallel pass on many times as large.
     """
-    i, size, acting = s.n_j + c, 0.0, s.trial
+    i, size, acting = s.n_j + c, 0.0, s.dv
     for j in range(s.n_q):
         acting[j] = abs(s.a_free[j])
         for b in range(s.n_members):
-            acting[j] += abs(s.MR[(s.n_j + s.contact.member[b]) * s.n_q + j] * s.contact.z[b])
+            acting[j] += abs(s.MR[(s.n_j + s.problem.ids[b]) * s.n_q + j] * s.problem.impulse[b])
     hold_joints(s)
     for d in range(s.n_c):
-        if s.contact.loaded[d] == 1:
+        if s.loaded[d] == 1:
             hold(s, s.n_j + d)
     for m in range(s.n_held):
         s.change[m] = s.D[s.row[m] * s.n_r + i]
     solve_held(s, s.change)
     for m in range(s.n_held):
-        size += abs(s.change[m]) * size_of(s, s.row[m], s.bias[s.row[m]], acting)
+        size += abs(s.change[m]) * size_of(s, s.row[m], 0.0, acting)
     return size
-
-
-def unload(s: Mechanism) -> None:
-    """Shift forces between loaded contacts that depend on each other until the rest of the loaded are independent.
-
-    No force becomes negative on the way (Caratheodory): so the rows that will be held carry forces that push.
-    """
-    n_j, force = s.n_j, s.contact.multiplier
-    shifting = True
-    while shifting:  # each round takes the load from one contact
-        shifting = False
-        hold_joints(s)
-        for c in range(s.n_c):
-            k = s.n_held
-            if s.contact.loaded[c] == 1 and not shifting:
-                hold(s, n_j + c)
-                if s.n_held == k:
-                    shifting = True
-                    for m in range(k):
-                        s.change[m] = s.D[s.row[m] * s.n_r + n_j + c]
-                    solve_held(s, s.change)
-                    share, leaves = force[c], c
-                    for m in range(s.n_kept, k):
-                        d = s.row[m] - n_j
-                        if force[d] + share * s.change[m] < 0.0:
-                            share, leaves = force[d] / -s.change[m], d
-                    for m in range(s.n_kept, k):
-                        force[s.row[m] - n_j] += share * s.change[m]
-                    force[c] -= share
-                    force[leaves], s.contact.loaded[leaves] = 0.0, 0

@@ -12,18 +12,19 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.codes import OPEN, SLIDES
+
 if not cython.compiled:
-    from lcpstep.events.parabolas.held import joints_own
-    from lcpstep.events.parabolas.problem import CHECKED, solve_contacts
+    from lcpstep.events.parabolas.forces import joints_own, solve_members
     from lcpstep.events.parabolas.state import Mechanism
+    from lcpstep.events.rows.chatter import CHECKED
     from lcpstep.events.rows.held import add_column, constrain, hold, hold_joints
-    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.vectors import clear, copy, largest, product
-    from lcpstep.pointers import abs, max, min
+    from lcpstep.pointers import abs, min
 
 
 def strike(s: Mechanism) -> bool:
-    """The impact of the contacts whose gap is zero and that do not separate; p into `z`, by member.
+    """The impact of the contacts whose gap is zero and that do not separate; p into `problem.impulse`, by member.
 
     Velocities and contact speeds are those after it. False where none exists. What is held from all sides cannot
     leave every obstacle as its restitution asks, and speeds carried along may not agree with the velocities: where no
@@ -33,11 +34,14 @@ def strike(s: Mechanism) -> bool:
     if solve_law(s, True) or solve_law(s, False):
         return True
     for c in range(s.n_c):
-        s.contact.speed[c] = product(s.R, s.v, s.n_j + c, s.n_q) + s.contact.rate[c]
-        if s.contact.closed[c] == 1:
-            s.contact.closed[c], s.contact.gap[c] = 0, 0.0
+        s.velocity[s.n_j + c] = product(s.R, s.v, s.n_j + c, s.n_q)
+        if s.mode[c] != OPEN:
+            s.mode[c], s.gap[s.n_j + c] = OPEN, 0.0
     gather(s)
-    return solve_law(s, False)
+    found = solve_law(s, False)
+    for a in range(0 if found else s.n_members):  # as a message names them
+        s.mode[s.problem.ids[a]] = SLIDES
+    return found
 
 
 def gather(s: Mechanism) -> None:
@@ -45,118 +49,75 @@ def gather(s: Mechanism) -> None:
     s.n_members = 0
     hold_joints(s)
     for c in range(s.n_c):
-        s.contact.loaded[c] = 0
-        u = 0.0 if s.contact.closed[c] == 1 else s.contact.speed[c]
-        touches = s.contact.gap[c] == 0.0 and s.contact.parting[c] == 0
-        takes_part = s.contact.closed[c] == 1 or (touches and u <= speed_noise(s, c))
-        if takes_part and not (u >= -speed_noise(s, c) and joints_own(s, c)):
-            s.contact.member[s.n_members] = c
-            s.contact.noise[s.n_members] = speed_noise(s, c)
+        s.loaded[c] = 0
+        u = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
+        touches = s.gap[s.n_j + c] == 0.0 and s.parting[c] == 0
+        takes_part = s.mode[c] != OPEN or (touches and u <= s.noise(c))
+        if takes_part and not (u >= -s.noise(c) and joints_own(s, c)):
+            s.problem.ids[s.n_members], s.lift[s.n_members] = c, s.noise(c)
             s.n_members += 1
 
 
 def solve_law(s: Mechanism, rebounds: bool) -> bool:
     """Impulses by the law, with restitution or without it, applied; False where there are none."""
     for a in range(s.n_members):
-        c = s.contact.member[a]
-        u = 0.0 if s.contact.closed[c] == 1 else s.contact.speed[c]
-        s.contact.loaded[c] = 0
-        s.contact.b[a] = (1.0 + s.model.restitution[c]) * min(u, 0.0) if rebounds else min(u, 0.0)
+        c = s.problem.ids[a]
+        u = min(s.velocity[s.n_j + c], 0.0) if s.mode[c] == OPEN else 0.0
+        s.problem.rate[a] = (1.0 + s.model.restitution[c]) * u if rebounds else u
     hold_joints(s)
-    solved = solve_contacts(s)
+    solved = solve_members(s)
     most = impulses(s)
     for a in range(s.n_members):
-        if s.contact.z[a] < 0.0:
-            if not solved and s.contact.z[a] < -CHECKED * most:
+        if s.problem.impulse[a] < 0.0:
+            if not solved and s.problem.impulse[a] < -CHECKED * most:
                 return False
-            s.contact.z[a] = s.change[s.n_kept + a] = 0.0
+            s.problem.impulse[a] = s.change[s.n_kept + a] = 0.0
     if not solved and not separates(s):
         return False
-    apply(s)
+    for m in range(s.n_held):
+        s.push(s.row[m], s.change[m])
     return True
 
 
 def impulses(s: Mechanism) -> float:
-    """Impulses of the members, of which `z` is a guess, and of the joints into `change`; returns the largest.
+    """Impulses of the members, of which those found are a guess, and of joints into `change`; returns the largest.
 
     They give the loaded members the speeds of the law.
     """
-    n_j, k, dv = s.n_j, s.n_members, s.trial
+    n_j, k, p, dv = s.n_j, s.n_members, s.problem.impulse, s.dv
     clear(dv, s.n_q)
     clear(s.near, s.n_r)
     hold_joints(s)
     for a in range(k):
-        i = n_j + s.contact.member[a]
-        s.near[i] = s.contact.b[a]
-        add_column(s, s.MR, i, s.contact.z[a], dv)
+        i = n_j + s.problem.ids[a]
+        s.near[i] = s.problem.rate[a]
+        add_column(s, s.MR, i, p[a], dv)
     for a in range(k):
-        if s.contact.loaded[s.contact.member[a]] == 1:
-            hold(s, n_j + s.contact.member[a])
+        if s.loaded[s.problem.ids[a]] == 1:
+            hold(s, n_j + s.problem.ids[a])
     clear(s.held, s.n_held)
     if k + s.n_kept > 1:  # one impulse alone loses no digits
         constrain(s, dv, s.near)
     clear(s.further, s.n_r)
     for m in range(s.n_held):
         s.further[s.row[m]] = s.held[m]
+    copy(s.change, s.held, s.n_kept)
+    s.n_held = s.n_kept + k
     for a in range(k):
-        s.contact.z[a] = s.contact.z[a] + s.further[n_j + s.contact.member[a]]
-    list_impulses(s)
-    return largest(s.contact.z, 0.0, k)
-
-
-def list_impulses(s: Mechanism) -> None:
-    """The impulses of joints and members, in this order, into `change`, for `apply`."""
-    n_j, k_j, k = s.n_j, s.n_kept, s.n_members
-    copy(s.change, s.held, k_j)
-    for a in range(k):
-        s.row[k_j + a], s.change[k_j + a] = n_j + s.contact.member[a], s.contact.z[a]
-    s.n_held = k_j + k
+        i = n_j + s.problem.ids[a]
+        p[a] = p[a] + s.further[i]
+        s.row[s.n_kept + a], s.change[s.n_kept + a] = i, p[a]
+    return largest(p, 0.0, k)
 
 
 def separates(s: Mechanism) -> bool:
-    """Whether every member has at least the speed of the law after the impulses in `z`."""
+    """Whether every member has at least the speed of the law after the impulses found."""
     for a in range(s.n_members):
-        u, size, i = s.contact.b[a], abs(s.contact.b[a]), s.n_j + s.contact.member[a]
+        u, i = s.problem.rate[a], s.n_j + s.problem.ids[a]
+        size = abs(u)
         for m in range(s.n_held):
             u += s.D[i * s.n_r + s.row[m]] * s.change[m]
             size += abs(s.D[i * s.n_r + s.row[m]] * s.change[m])
         if u < -CHECKED * size:
             return False
     return True
-
-
-def apply(s: Mechanism) -> None:
-    """Apply the impulses `change` on the rows held.
-
-    The contacts' speeds are carried along, not computed from v, so that small ones keep their digits.
-    """
-    n_j, n_c, v = s.n_j, s.n_c, s.v
-    for m in range(s.n_held):
-        i, p = s.row[m], s.change[m]
-        if p != 0.0:
-            for j in range(s.n_q):
-                v[j] += s.MR[i * s.n_q + j] * p
-            if i < n_j:
-                s.joint.impulse[i] = s.joint.impulse[i] + p
-                s.joint.turn_impulse[i] = s.joint.turn_impulse[i] + p
-            else:
-                s.contact.impulse[i - n_j] = s.contact.impulse[i - n_j] + p
-                s.contact.turn_impulse[i - n_j] = s.contact.turn_impulse[i - n_j] + p
-            for c in range(n_c):
-                if s.D[(n_j + c) * s.n_r + i] != 0.0:
-                    du = s.D[(n_j + c) * s.n_r + i] * p
-                    s.contact.terms[c] = max(s.contact.terms[c], abs(du))
-                    s.contact.speed[c] = s.contact.speed[c] + du
-                    s.contact.synchronous[c] = 0.0
-
-
-def speed_noise(s: Mechanism, c: int) -> float:
-    """Rounding of the gap velocity of a contact, that of the earlier impacts of the same instant included.
-
-    Contact forces may have held against what the others would have made of it in the step before.
-    """
-    i, size = s.n_j + c, abs(s.contact.rate[c])
-    for j in range(s.n_q):
-        size += abs(s.R[i * s.n_q + j]) * (abs(s.v[j]) + s.length * abs(s.a_free[j]))
-    s.contact.terms[c] = max(size, s.contact.terms[c])
-    return NOISE * s.contact.terms[c]

@@ -4,7 +4,7 @@ from lcpstep.kernels.course cimport Events
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
-cdef Py_ssize_t DONE, NOT_FINITE
+cdef Py_ssize_t BEGIN, JUMP, MOVE, SETTLE, DONE, NOT_FINITE
 
 
 cdef class Course(Events):

@@ -10,19 +10,21 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.codes import BEGIN, JUMP, MOVE, SETTLE
 from lcpstep.kernels.status import DONE, NOT_FINITE
 
 if not cython.compiled:
-    from lcpstep.events.parabolas.equations import measure
     from lcpstep.events.parabolas.flight import fly
-    from lcpstep.events.parabolas.keep import keep
     from lcpstep.events.parabolas.modes import jump, settle
-    from lcpstep.events.parabolas.motion import rounding_of_gap
-    from lcpstep.events.parabolas.state import BEGIN, JUMP, MOVE, SETTLE, Mechanism
+    from lcpstep.events.parabolas.state import Mechanism
+    from lcpstep.events.rows.equations import free_motion, measure_rates, respond
+    from lcpstep.events.rows.keep import keep
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
+    from lcpstep.kernels.dynamics import gaps
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy
+    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.pointers import after
 
 
 class Course(Events):
@@ -45,7 +47,7 @@ class Course(Events):
     def move(self) -> int:
         """A flight, or what precedes it; a status."""
         if self.record.row == 0 and self.record.n_times == 0:
-            keep(self.s, self.record, self.s.t0)
+            keep(self.s, self.record, self.s.t0, self.s.q)
         else:
             fly(self.s, self.record, self.tally)
         return DONE
@@ -53,7 +55,7 @@ class Course(Events):
     def keep_now(self) -> None:
         """Keep the state at the base time, called from Python."""
         copy(self.s.q, self.s.q0, 2 * self.s.n_q)
-        keep(self.s, self.record, self.s.t0)
+        keep(self.s, self.record, self.s.t0, self.s.q)
 
 
 def occur(s: Mechanism, record: Record, tally: Tally) -> int:
@@ -69,11 +71,22 @@ def occur(s: Mechanism, record: Record, tally: Tally) -> int:
 
 
 def begin(s: Mechanism) -> bool:
-    """The state at the start of the span, where gaps that are zero are closed; False where not finite."""
+    """The state at the start of the span, where gaps that are zero are closed; False where not finite.
+
+    Rows and free acceleration are known for good: gaps are linear, and neither obstacles nor joints move.
+    """
     s.find_corners(s.t0)
-    if not measure(s, s.t0):
+    if not free_motion(s, s.t0, s.q, s.v, s.a_free):
         return False
-    for c in range(s.n_c):
-        if s.contact.gap[c] <= rounding_of_gap(s, c):
-            s.contact.gap[c] = 0.0
+    if s.n_c > 0:
+        gaps(s.model, s.t0, s.q, s.v, after(s.gap, s.n_j))
+    measure_rates(s, s.t0, s.q, s.v)
+    respond(s)
+    for i in range(s.n_j, s.n_r):
+        s.velocity[i] = product(s.R, s.v, i, s.n_q)
+        size = s.velocity[i] + s.gap[i]
+        if size - size != 0.0:
+            return False
+        if s.gap[i] <= s.rounding_of_gap(i - s.n_j):
+            s.gap[i] = 0.0
     return True

@@ -3,7 +3,7 @@ from lcpstep.events.parabolas.state cimport Mechanism
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
-cdef Py_ssize_t IMPACT, NO_FORCES, NO_IMPULSES, RELEASE, STICK, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
+cdef Py_ssize_t IMPACT, JUMP, NO_FORCES, NO_IMPULSES, OPEN, SLIDES, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
 
 cdef Py_ssize_t jump(Mechanism s, Record record, Tally tally) noexcept nogil
 @cython.locals(rises=bint)
@@ -19,5 +19,3 @@ cdef bint has_come(Mechanism s, Py_ssize_t c) noexcept nogil
 cdef void tell_impacts(Mechanism s, Record record, Tally tally, double t) noexcept nogil
 cdef Py_ssize_t settle(Mechanism s, Record record, Tally tally) noexcept nogil
 cdef Py_ssize_t forces(Mechanism s) noexcept nogil
-@cython.locals(some=bint)
-cdef bint tell_modes(Mechanism s, Record record, Tally tally, double t) noexcept nogil

@@ -7,23 +7,23 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.ends import IMPACT, NO_FORCES, NO_IMPULSES, RELEASE, STICK
+from lcpstep.events.codes import IMPACT, JUMP, NO_FORCES, NO_IMPULSES, OPEN, SLIDES
 from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
 
 if not cython.compiled:
     from lcpstep.events.parabolas.chatter import close_chatter, hand_on
-    from lcpstep.events.parabolas.cycle import fades, look_back, recurrence, sum_up
-    from lcpstep.events.parabolas.flight import polish, synchronise
+    from lcpstep.events.parabolas.flight import polish, rebase, synchronise
     from lcpstep.events.parabolas.forces import contact_forces, stands
-    from lcpstep.events.parabolas.impact import speed_noise, strike
-    from lcpstep.events.parabolas.keep import keep_event
-    from lcpstep.events.parabolas.motion import rebase, rounding_of_gap
-    from lcpstep.events.parabolas.state import JUMP, Mechanism
+    from lcpstep.events.parabolas.impact import strike
+    from lcpstep.events.parabolas.state import Mechanism
+    from lcpstep.events.rows.cycle import fades, look_back, recurs, sum_up
+    from lcpstep.events.rows.held import hold_joints
+    from lcpstep.events.rows.keep import keep_event, tell
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import FOR_EVER, looks_back
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.together import order_matters
-    from lcpstep.pointers import abs, max
+    from lcpstep.pointers import abs
 
 ROUNDS = 100_000  # problems of impacts at one instant
 
@@ -32,7 +32,7 @@ def jump(s: Mechanism, record: Record, tally: Tally) -> int:
     """Impacts at the state q, v until no contact that is closed approaches."""
     before = tally.stalled
     for c in range(s.n_c):
-        s.contact.terms[c], s.contact.parting[c] = 0.0, 1 if just_opened(s, c) else 0
+        s.terms[c], s.parting[c] = 0.0, 1 if just_opened(s, c) else 0
     for turn in range(ROUNDS):
         if not approaches(s):
             rejoin(s)
@@ -44,7 +44,7 @@ def jump(s: Mechanism, record: Record, tally: Tally) -> int:
             return BUFFER_FULL
         if tally.events > tally.max_events:
             return TOO_MANY_EVENTS
-        ratio = recurrence(s) if turn > 0 else 0.0
+        ratio = recurs(s) if turn > 0 else 0.0
         if ratio >= FOR_EVER:
             if not fades(s):
                 return TOO_MANY_EVENTS
@@ -64,8 +64,8 @@ def jump(s: Mechanism, record: Record, tally: Tally) -> int:
 
 def just_opened(s: Mechanism, c: int) -> bool:
     """Whether contact c has struck at this instant, as far as can be told, and the forces have opened it."""
-    rises = s.contact.closed[c] == 0 and s.contact.curve[c] > 0.0
-    return rises and s.t0 - s.contact.struck[c] <= s.untold(0.0)
+    rises = s.mode[c] == OPEN and s.curve[c] > 0.0
+    return rises and s.t0 - s.struck[c] <= s.untold(0.0)
 
 
 def let_go(s: Mechanism) -> None:
@@ -76,43 +76,43 @@ def let_go(s: Mechanism) -> None:
     """
     landed = False
     for c in range(s.n_c):
-        new = s.contact.closed[c] == 1 and s.contact.was_closed[c] == 0
-        landed = landed or (new and s.contact.struck[c] == s.t0)
+        new = s.mode[c] != OPEN and s.was_mode[c] == OPEN
+        landed = landed or (new and s.struck[c] == s.t0)
     if not landed:
         return
     for c in range(s.n_c):
-        if s.contact.closed[c] == 1:
-            s.contact.parting[c] = 1
+        if s.mode[c] != OPEN:
+            s.parting[c] = 1
     contact_forces(s)
     for c in range(s.n_c):
-        if s.contact.closed[c] == 1:
-            s.contact.parting[c] = 0
+        if s.mode[c] != OPEN:
+            s.parting[c] = 0
 
 
 def rejoin(s: Mechanism) -> None:
     """After the last impact of an instant the forces decide anew about the contacts that parted and still touch."""
     for c in range(s.n_c):
-        touches = s.contact.gap[c] <= rounding_of_gap(s, c)
-        if s.contact.parting[c] == 1 and touches and abs(s.contact.speed[c]) <= speed_noise(s, c):
-            s.contact.closed[c], s.contact.speed[c] = 1, 0.0
-        s.contact.parting[c] = 0
+        touches = s.parting[c] == 1 and s.gap[s.n_j + c] <= s.rounding_of_gap(c)
+        if touches and abs(s.velocity[s.n_j + c]) <= s.noise(c):
+            s.mode[c], s.velocity[s.n_j + c] = SLIDES, 0.0
+        s.parting[c] = 0
 
 
 def approaches(s: Mechanism) -> bool:
     """Whether a contact on the surface approaches it; one there without speed to rounding is closed."""
     hit = False
     for c in range(s.n_c):
-        u = s.contact.speed[c]
-        if s.contact.closed[c] == 0 and (s.contact.gap[c] == 0.0 or has_come(s, c)):
-            noise = speed_noise(s, c)
+        u = s.velocity[s.n_j + c]
+        if s.mode[c] == OPEN and (s.gap[s.n_j + c] == 0.0 or has_come(s, c)):
+            noise = s.noise(c)
             if u <= noise:
-                s.contact.gap[c] = 0.0
+                s.gap[s.n_j + c] = 0.0
                 if u < -noise:
-                    s.contact.parting[c] = 0
-                elif s.contact.parting[c] == 0:
-                    s.contact.closed[c], s.contact.speed[c] = 1, 0.0
+                    s.parting[c] = 0
+                elif s.parting[c] == 0:
+                    s.mode[c], s.velocity[s.n_j + c] = SLIDES, 0.0
                 hit = hit or u < -noise
-        s.contact.before[c] = s.contact.speed[c]
+        s.before[c] = s.velocity[s.n_j + c]
     return hit
 
 
@@ -120,13 +120,13 @@ def has_come(s: Mechanism, c: int) -> bool:
     """Whether a gap that is not exactly zero counts as closed: if rounding may be why, and if the order of impacts
     matters: beads that meet by threes are followed one after another, which is exact.
     """
-    u, i = s.contact.speed[c], s.n_j + c
-    if not u < 0.0 or s.contact.gap[c] > rounding_of_gap(s, c):
-        return s.contact.gap[c] < 0.0
+    u, i = s.velocity[s.n_j + c], s.n_j + c
+    if not u < 0.0 or s.gap[s.n_j + c] > s.rounding_of_gap(c):
+        return s.gap[s.n_j + c] < 0.0
     for d in range(s.n_c):
-        k, u_d = s.n_j + d, s.contact.speed[d]
+        k, u_d = s.n_j + d, s.velocity[s.n_j + d]
         r_c, r_d = s.model.restitution[c], s.model.restitution[d]
-        strikes = s.contact.closed[d] == 0 and s.contact.gap[d] == 0.0 and u_d < -speed_noise(s, d)
+        strikes = s.mode[d] == OPEN and s.gap[s.n_j + d] == 0.0 and u_d < -s.noise(d)
         if strikes and order_matters(
             s.D[i * s.n_r + i], s.D[k * s.n_r + k], s.D[i * s.n_r + k], r_c, r_d, u, u_d
         ):
@@ -137,17 +137,17 @@ def has_come(s: Mechanism, c: int) -> bool:
 def tell_impacts(s: Mechanism, record: Record, tally: Tally, t: float) -> None:
     """Log the impacts of the problem just solved; contacts that it leaves without speed are closed."""
     for m in range(s.n_members):
-        c, p = s.contact.member[m], s.contact.z[m]
-        before, noise = s.contact.before[c], speed_noise(s, c)
+        c, p = s.problem.ids[m], s.problem.impulse[m]
+        before, noise = s.before[c], s.noise(c)
         if p > 0.0:
             u = -s.model.restitution[c] * before
             s.log(record, tally, t, c, IMPACT, before, u, p)
-            s.contact.since[c], s.contact.struck[c] = t - s.contact.struck[c], t
+            s.since[c], s.struck[c] = t - s.struck[c], t
         else:
-            u = s.contact.speed[c]
-        s.contact.closed[c] = 0 if u > noise else 1
-        s.contact.speed[c] = u if u > noise else 0.0
-        s.contact.gap[c] = 0.0
+            u = s.velocity[s.n_j + c]
+        s.mode[c] = OPEN if u > noise else SLIDES
+        s.velocity[s.n_j + c] = u if u > noise else 0.0
+        s.gap[s.n_j + c] = 0.0
 
 
 def settle(s: Mechanism, record: Record, tally: Tally) -> int:
@@ -159,7 +159,7 @@ def settle(s: Mechanism, record: Record, tally: Tally) -> int:
             return code
         if turn == n_c or not close_chatter(s, record, tally):
             break
-    if tell_modes(s, record, tally, t):
+    if tell(s, record, tally, t):
         polish(s)
     rebase(s, t)
     hand_on(s)
@@ -171,24 +171,12 @@ def forces(s: Mechanism) -> int:
     """Accelerations and multipliers; nothing to do where no contact is or was closed."""
     closed = 0
     for c in range(s.n_c):
-        closed += s.contact.closed[c]
+        closed += s.mode[c]
     if closed == 0 and s.bare:
+        hold_joints(s)
         return DONE
     code = contact_forces(s)
     if code == DONE:
         s.bare = closed == 0
         code = DONE if stands(s) else NO_FORCES
     return code
-
-
-def tell_modes(s: Mechanism, record: Record, tally: Tally, t: float) -> bool:
-    """Log the contacts that have opened, and those that have closed for good; whether there is one of these."""
-    some = False
-    for c in range(s.n_c):
-        if s.contact.closed[c] != s.contact.was_closed[c]:
-            kind = STICK if s.contact.closed[c] == 1 else RELEASE
-            some = some or kind == STICK
-            when = max(t, s.contact.chatter_end[c]) if kind == STICK else t
-            s.log(record, tally, when, c, kind, 0.0, s.contact.speed[c], 0.0)
-            s.contact.was_closed[c] = s.contact.closed[c]
-    return some

@@ -7,15 +7,12 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.events.ends import NO_IMPULSES
 from lcpstep.events.parabolas.loop import Course
 from lcpstep.events.parabolas.state import Mechanism
 from lcpstep.events.running import Integrated
 from lcpstep.events.scan import scan_interval
-from lcpstep.gaps import no_way_out
 from lcpstep.kernels.model import Model
 from lcpstep.recording import Kept
-from lcpstep.trajectory import Status
 
 
 def is_constant(m: Model, joints: Model) -> bool:
@@ -35,14 +32,3 @@ class ParabolicRun(Integrated):
         s.start(scene.q0, scene.v0)
         super().__init__(method, scene, kept, s, s, scan_interval(scene, m, 0.0), scene.n_c + scene.n_j, True)
         self.course = Course(s, self.recorder.record, self.tally)
-
-    def why(self, code: int) -> str:
-        """Why the run ended early, in words."""
-        s, where = self.system, self.where
-        if code == NO_IMPULSES:
-            members = s.contact.members(s.n_members)
-            words = f"no impulses of the contacts {members} end their approach"
-            return f"{no_way_out(self.scene, self.now, self.state[0], members) or words} {where}"
-        if code == Status.TOO_MANY_EVENTS:
-            return f"{self.bound}; the last at contacts {s.contact.latest()}, closed are {self.closed_ones}, {where}"
-        return super().why(code)

@@ -1,4 +1,4 @@
-"""The state of a system with contacts and joints, under the names of mechanics, and its work space."""
+"""The state of a system whose motion between events is a parabola, under the names of mechanics."""
 
 from __future__ import annotations
 
@@ -8,106 +8,27 @@ import cython
 import numpy as np
 
 if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.events.rows.state import Rows
+    from lcpstep.arrays import doubles
+    from lcpstep.events.rows.chatter import find_stop
+    from lcpstep.events.rows.contacts import Contacts, add_impulse, hold_modes
+    from lcpstep.events.rows.equations import size_of
+    from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.model import Model
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import after, indices_after, inf
-
-CONTACTS, MARKS = 12, 5  # numbers per contact besides those of `Pressed`, and marks of a contact
-BEGIN, MOVE, JUMP, SETTLE = range(4)  # what comes next
+    from lcpstep.kernels.together import gap_rounding
+    from lcpstep.pointers import abs, after, inf, max
 
 
-class Pressed:
-    """Contacts or joints at the state of the system; each is a row of the equations.
+class Mechanism(Contacts):
+    """Contacts and joints whose gaps and velocities are carried along, not computed from q, v.
 
-    gap, speed, curve : (n,)   gap, its velocity and acceleration;  multiplier : (n,)   force
-    rate, bias, G     of their rows, see `Rows`
-    impulse           since the last kept state
-    turn_impulse      since a number of impacts ago, at one instant
+    So small ones keep their digits; what touches has a gap of zero.
 
-    Parameters
-    ----------
-    n : int
-    """
-
-    def __init__(self, n: int) -> None:
-        self.n, self.own = n, np.zeros(6 * n)
-        self.gap = doubles(self.own)
-        self.speed = after(self.gap, n)
-        self.curve = after(self.speed, n)
-        self.multiplier = after(self.curve, n)
-        self.turn_impulse = after(self.multiplier, n)
-        self.impulse = after(self.turn_impulse, n)
-
-    def take_rows(self, s: Rows, first: int) -> None:
-        """Theirs are the rows from the first on."""
-        self.rate, self.bias = after(s.rate, first), after(s.bias, first)
-        self.G = after(s.R, first * s.n_q)
-
-
-class Contacts(Pressed):
-    """Contacts, what has happened at each, and the problem of those that are closed, its members.
-
-    struck, since     time of the last impact, since the one before
-    chatter_end       when its chattering ends
-    rest              how long the sequence that is summed up lasts; negative: none
-    owed              impulse taken on account, for which later ones pay
-    terms             size of the terms of a gap velocity, at the impacts of one instant
-    before            speed before the impact at hand
-    turn_speed        speed a number of impacts ago
-    synchronous       whether gap and speed are those of q, v
-    b, z, noise       by member: right-hand side and solution of the problem, rounding of b
-    member            contacts of the problem
-    closed, was_closed, loaded   lasting contact; so when last told; carries a force
-    parting                      let go of by the forces between two impacts of one instant
-    """
-
-    def __init__(self, n: int) -> None:
-        Pressed.__init__(self, n)
-        self.history, self.marks = np.zeros(CONTACTS * n), np.zeros(MARKS * n, dtype=np.intp)
-        self.struck = doubles(self.history)
-        self.since = after(self.struck, n)
-        self.chatter_end = after(self.since, n)
-        self.rest = after(self.chatter_end, n)
-        self.owed = after(self.rest, n)
-        self.terms = after(self.owed, n)
-        self.turn_speed = after(self.terms, n)
-        self.synchronous = after(self.turn_speed, n)
-        self.before = after(self.synchronous, n)
-        self.b = after(self.before, n)
-        self.z = after(self.b, n)
-        self.noise = after(self.z, n)
-        self.member = indices(self.marks)
-        self.closed = indices_after(self.member, n)
-        self.was_closed = indices_after(self.closed, n)
-        self.loaded = indices_after(self.was_closed, n)
-        self.parting = indices_after(self.loaded, n)
-        for c in range(n):
-            self.struck[c] = self.chatter_end[c] = -inf
-
-    def members(self, n: int) -> list[int]:
-        """The first n members of the problem."""
-        return sorted([self.member[a] for a in range(n)])
-
-    def latest(self) -> list[int]:
-        """The contacts that have struck last."""
-        times = [self.struck[c] for c in range(self.n)]
-        return [c for c in range(self.n) if times[c] == sorted(times)[-1]]
-
-
-class Mechanism(Rows):
-    """A system with contacts and joints: its equations, its state, and work space.
-
-    t_end             end of the span
     length            duration of the last flight
     bare              whether the acceleration is that without contacts
-    next              what comes next: BEGIN, MOVE, JUMP or SETTLE
     state             q0, v0 as Python sees them;  evaluations   of forces, none
-    q0, v0            state at the base time;  q, v  state last asked for;  a  acceleration
-    contact, joint    rows at q, v
-    W                 matrix of the problem of the n_members members of it
-    culprit           joint that contradicts others, or -1
+    q0, v0            state at the base time;  q, v  state last asked for
+    n_members         of the problem, contacts that are closed;  lift : (n_c,)   rounding of its rates
+    synchronous : (n_c,)   whether gap and velocity are those of q, v
 
     Parameters
     ----------
@@ -117,25 +38,17 @@ class Mechanism(Rows):
     def __init__(
         self, model: Model, joints: Model, n_j: int, tolerances: tuple[float, float], t_span: tuple[float, float]
     ) -> None:  # fmt: skip
-        Rows.__init__(self, model, joints, n_j, model, 0, tolerances, t_span, (), inf)
-        n, n_c, r = self.n_q, self.n_c, self.n_r
-        self.t_end, self.next = t_span[1], BEGIN
-        self.length, self.bare, self.n_members, self.culprit = 0.0, False, 0, -1
+        Contacts.__init__(self, model, joints, n_j, model, 0, tolerances, t_span, (), inf)
+        n, n_c = self.n_q, self.n_c
+        self.length, self.bare, self.n_members = 0.0, False, 0
         self.state, self.evaluations = np.zeros(2 * n), 0
-        self.numbers = np.zeros(4 * n + r + n_c * n_c)
+        self.numbers = np.zeros(2 * n + 2 * n_c)
         self.q0 = doubles(self.state)
         self.v0 = after(self.q0, n)
         self.q = doubles(self.numbers)
         self.v = after(self.q, n)
-        self.a = after(self.v, n)
-        self.trial = after(self.a, n)
-        self.impulse = after(self.trial, n)
-        self.W = after(self.impulse, r)
-        self.contact, self.joint = Contacts(n_c), Pressed(n_j)
-        self.lcp = Workspace(n_c)
-        self.joint.take_rows(self, 0)
-        self.contact.take_rows(self, n_j)
-        self.contact.impulse, self.joint.impulse = self.impulse, after(self.impulse, n_c)
+        self.lift = after(self.v, n)
+        self.synchronous = after(self.lift, n_c)
 
     def start(self, q: Any, v: Any) -> None:
         """Begin with the state q, v (n_q,)."""
@@ -143,6 +56,52 @@ class Mechanism(Rows):
         for i in range(2 * self.n_q):
             self.q[i] = self.q0[i]
 
-    def closed_ones(self) -> list[int]:
-        """The contacts that are closed."""
-        return [c for c in range(self.n_c) if self.contact.closed[c] == 1]
+    def noise(self, c: int) -> float:
+        """Rounding of the gap velocity of a contact, that of the earlier impacts of the same instant included.
+
+        Contact forces may have held against what the others would have made of it in the step before.
+        """
+        i, size = self.n_j + c, 0.0
+        for j in range(self.n_q):
+            size += abs(self.R[i * self.n_q + j]) * (abs(self.v[j]) + self.length * abs(self.a_free[j]))
+        self.terms[c] = max(NOISE * size, self.terms[c])
+        return self.terms[c]
+
+    def rounding_of_gap(self, c: int) -> float:
+        """What rounding may leave of gap c, of the way included by which it has come in the last step."""
+        way = self.length * size_of(self, self.n_j + c, 0.0, self.v) if self.length > 0.0 else 0.0
+        return gap_rounding(self.model, after(self.R, self.n_j * self.n_q), self.q, c, way)
+
+    def push(self, i: int, p: float) -> None:
+        """Apply the impulse p on row i, to the velocities of contacts as well, and count it."""
+        if p != 0.0:
+            self.move(i, p)
+            add_impulse(self, i, p)
+
+    def move(self, i: int, p: float) -> None:
+        """The same, not counted."""
+        for j in range(self.n_q):
+            self.v[j] += self.MR[i * self.n_q + j] * p
+        for c in range(self.n_c):
+            k = self.n_j + c
+            if self.D[k * self.n_r + i] != 0.0:
+                du = self.D[k * self.n_r + i] * p
+                self.terms[c] = max(self.terms[c], NOISE * abs(du))
+                self.velocity[k] = self.velocity[k] + du
+                self.synchronous[c] = 0.0
+
+    def stop(self) -> None:
+        """Take their velocities from the closed contacts."""
+        self.halt()
+        for m in range(self.n_held):
+            add_impulse(self, self.row[m], self.change[m])
+
+    def halt(self) -> None:
+        """The same, by impulses on the rows held that lie in `change`, and are not counted."""
+        hold_modes(self)
+        find_stop(self)
+        for m in range(self.n_held):
+            self.move(self.row[m], self.change[m])
+        for c in range(self.n_c):
+            if self.mode[c] != 0:
+                self.velocity[self.n_j + c] = 0.0

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errors import LcpStepError
+from lcpstep.events.codes import OPEN
 from lcpstep.events.contacts import point
-from lcpstep.events.contacts.codes import OPEN
 from lcpstep.lengths import derivative
 from lcpstep.trajectory import Kind
 

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.events.codes import OPEN, STICKS
 from lcpstep.events.contacts import point
-from lcpstep.events.contacts.codes import OPEN, STICKS
 from lcpstep.lengths import derivative
 
 Array = NDArray[np.float64]

@@ -23,8 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.errors import LcpStepError
+from lcpstep.events.codes import OPEN, RELATIVE_STEP, SLIDES, STICKS
 from lcpstep.events.contacts import point
-from lcpstep.events.contacts.codes import OPEN, RELATIVE_STEP, SLIDES, STICKS
 from lcpstep.events.contacts.run import start
 from lcpstep.events.contacts.smooth import Smooth
 from lcpstep.lengths import ASIDE, derivative, lengths, sizes

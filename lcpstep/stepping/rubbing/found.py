@@ -14,13 +14,13 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import OPEN, SLIDES
+from lcpstep.events.codes import OPEN, SLIDES
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import rubs
     from lcpstep.events.contacts.guards import first_fall, read
     from lcpstep.events.contacts.state import GUARDS
     from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
+    from lcpstep.events.rows.contacts import rubs
     from lcpstep.events.rows.equations import measure_biases, renew_rates, size_of
     from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.vectors import copy, product
@@ -64,7 +64,7 @@ def widen_bands(s: Strides) -> None:
                 * (size_of(s.rows, i, s.rate[i], s.v) + s.h * size_of(s.rows, i, s.bias[i], s.a_free)),
             )
             s.band[g] = max(s.band[g], NOISE * s.atol)
-        elif s.mode[c] == SLIDES and rubs(s, c):
+        elif s.mode[c] == SLIDES and rubs(s.rows, c):
             g, i = g + 1, i + s.n_c
             s.band[g] = NOISE * (
                 size_of(s.rows, i, s.rate[i], s.v) + s.h * size_of(s.rows, i, s.bias[i], s.a_free) + s.atol
@@ -84,7 +84,7 @@ def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: D
         i = s.n_j + c
         if s.mode[c] == OPEN:
             slope[GUARDS * c] = product(s.R, v, i, s.n_q) + s.rate[i]
-        elif s.mode[c] == SLIDES and rubs(s, c):
+        elif s.mode[c] == SLIDES and rubs(s.rows, c):
             turn = product(s.R, a, i + s.n_c, s.n_q) + s.bias[i + s.n_c]
             slope[GUARDS * c + 1] = s.direction[c] * turn
     return True
@@ -187,7 +187,7 @@ def is_motion(s: Strides, g: int) -> bool:
     c = g // GUARDS
     if g % GUARDS == 0:
         return s.mode[c] == OPEN
-    return s.mode[c] == SLIDES and g % GUARDS == 1 and rubs(s, c)
+    return s.mode[c] == SLIDES and g % GUARDS == 1 and rubs(s.rows, c)
 
 
 def curve(s: Strides, g: int, h: float) -> float:

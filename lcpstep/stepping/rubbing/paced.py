@@ -51,7 +51,7 @@ def pace(s: Strides, t: float, longest: float) -> int:
     h, before, longer = min(s.next_step, longest), inf, inf
     truncated = h < s.next_step
     while True:
-        s.culprit = -1
+        s.rows.culprit = -1
         error = inf
         if halves(s, t, h) and s.step(t, h) and note_arrival(s, t, h):
             error = weigh(s, h)
@@ -92,7 +92,7 @@ def leaps(s: Strides, h: float) -> bool:
 
 def why(s: Strides, error: float) -> int:
     """Why no step was short enough."""
-    if s.culprit >= 0:
+    if s.rows.culprit >= 0:
         return PAINLEVE_INCONSISTENT
     return STEP_TOO_SMALL if error < inf else NOT_FINITE
 

@@ -7,16 +7,15 @@ import cython
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import add_impulse, measure
-    from lcpstep.events.contacts.held import count_impulses, hold_modes
-    from lcpstep.events.contacts.impact import still
-    from lcpstep.events.contacts.keep import keep, keep_event
+    from lcpstep.events.contacts.equations import measure
     from lcpstep.events.contacts.loose import first_stray
     from lcpstep.events.contacts.modes import decide, undecided
     from lcpstep.events.contacts.moments import of_sliding
     from lcpstep.events.contacts.state import GUARDS
     from lcpstep.events.contacts.step import arrive, find_standing, mark_resting, of_force
+    from lcpstep.events.rows.contacts import add_impulse, count_impulses, hold_modes, still
     from lcpstep.events.rows.jumps import breaks
+    from lcpstep.events.rows.keep import keep, keep_event
     from lcpstep.events.rows.projection import project
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.record import Record
@@ -48,7 +47,7 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
     if goal <= t0:
         end_step(s, record, tally)
         return DONE
-    s.culprit = -1
+    s.rows.culprit = -1
     border = min(goal, s.clock.high)
     h = border - t0
     if not s.going and not note_base(s, t0):
@@ -69,7 +68,7 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
         if border >= goal:
             end_step(s, record, tally)
         elif border < s.clock.high:
-            keep_event(s, record, border)
+            keep_event(s.rows, record, border)
         return DONE
     if tau == NOWHERE:
         return pass_by(s, record, s.found * h)
@@ -119,7 +118,7 @@ def turns_at_once(s: Strides, g: int) -> bool:
     """Whether guard g, located within the step, is a sliding velocity that is not zero there: its belt has jumped."""
     if not of_sliding(s, g):
         return False
-    none = still(s, s.n_j + s.n_c + g // GUARDS)
+    none = still(s.rows, s.n_j + s.n_c + g // GUARDS)
     rounding = NOISE * (abs(s.clock.t0) + s.tau) * abs(s.begin_slope[g])
     return s.begin_value[g] >= -none and abs(s.value[g]) > max(none, rounding)
 
@@ -134,7 +133,7 @@ def attempt(s: Strides, t: float, h: float) -> int:
 
 def failed(s: Strides) -> int:
     """Why there was no step."""
-    return PAINLEVE_INCONSISTENT if s.culprit >= 0 else NOT_FINITE
+    return PAINLEVE_INCONSISTENT if s.rows.culprit >= 0 else NOT_FINITE
 
 
 def pass_by(s: Strides, record: Record, tau: float) -> int:
@@ -142,7 +141,7 @@ def pass_by(s: Strides, record: Record, tau: float) -> int:
     if not s.step(s.clock.t0, tau):
         return failed(s)
     take_over(s, record, s.clock.after(tau), tau)
-    keep_event(s, record, s.clock.t0)
+    keep_event(s.rows, record, s.clock.t0)
     return DONE
 
 
@@ -160,7 +159,7 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
         if code != DONE or ahead >= h or (changes and not waits):
             break
         ahead *= FURTHER
-    hold_modes(s)  # the old ones, for the rest of the step
+    hold_modes(s.rows)  # the old ones, for the rest of the step
     return code
 
 
@@ -173,9 +172,9 @@ def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
         copy(s.y, s.y_new, s.n)
     s.clock.start_at(t)
     if put_back:
-        count_impulses(s, s.change)
-    while record.wants(t, t >= s.t_end):  # the end of the span
-        keep(s, record, record.awaited(), s.y)
+        count_impulses(s.rows, s.change)
+    while record.wants(t, t >= s.clock.t_end):  # the end of the span
+        keep(s.rows, record, record.awaited(), s.y)
         record.next_time += 1
 
 
@@ -205,7 +204,7 @@ def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
             press(s, pressed, place)
             s.at(place, s.seen)
             pressed = place
-        keep(s, record, record.awaited(), s.seen)
+        keep(s.rows, record, record.awaited(), s.seen)
         record.next_time += 1
     record.store(s.F, s.length)
     return pressed
@@ -217,7 +216,7 @@ def press(s: Strides, a: float, b: float) -> None:
         return
     for i in range(s.n_r):
         change = s.push[i] if b >= 1.0 else s.pressed(i, b)
-        add_impulse(s, i, change - s.pressed(i, a) if a > 0.0 else change)
+        add_impulse(s.rows, i, change - s.pressed(i, a) if a > 0.0 else change)
 
 
 def arrive_with(s: Strides, t: float) -> None:
@@ -240,6 +239,6 @@ def end_step(s: Strides, record: Record, tally: Tally) -> None:
     tally.steps += 1
     if record.is_due(tally.steps):
         if record.keeps_events():
-            keep_event(s, record, s.clock.t0)
+            keep_event(s.rows, record, s.clock.t0)
         else:
-            keep(s, record, s.clock.t0, s.y)
+            keep(s.rows, record, s.clock.t0, s.y)

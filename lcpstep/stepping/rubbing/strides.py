@@ -55,7 +55,7 @@ class Strides(Smooth):
         super().__init__(*given[:-5])
         self.order, self.h, self.t_start, self.n_steps, self.tolerance = given[-5:]
         self.tau = 0.0
-        self.going, self.span = False, self.t_end - self.t_start
+        self.going, self.span = False, self.clock.t_end - self.t_start
         self.size_q = self.size_v = 0.0
         g = GUARDS * self.n_c
         self.arrival = after(self.K, ARRIVAL * self.n)
@@ -104,10 +104,10 @@ class Strides(Smooth):
     def goal(self, steps: int) -> float:
         """The time at which the step after so many ends, at the latest."""
         if self.tolerance > 0.0:
-            return min(self.clock.t0 + min(self.h, self.scan_length), self.t_end)
+            return min(self.clock.t0 + min(self.h, self.scan_length), self.clock.t_end)
         if steps + 1 >= self.n_steps:
-            return self.t_end
-        return min(self.t_start + self.h * (steps + 1), self.t_end)
+            return self.clock.t_end
+        return min(self.t_start + self.h * (steps + 1), self.clock.t_end)
 
 
 def verlet(s: Strides, t: float, h: float) -> bool:

@@ -7,13 +7,10 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import ACCUMULATION, OPEN, SLIDES, STICKS
+from lcpstep.events.codes import ACCUMULATION, OPEN, SLIDES, STICKS
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import apply, measure_velocities, rubs
-    from lcpstep.events.contacts.held import hold_modes, stop_rows
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.held import hold_joints
+    from lcpstep.events.rows.contacts import Contacts, is_met, rubs
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import CERTAIN, FAINT, FOR_EVER, left, proportion
     from lcpstep.kernels.tally import Tally
@@ -21,18 +18,21 @@ if not cython.compiled:
     from lcpstep.pointers import abs, after, max
 
 
-def look_back(s: Rubbing) -> None:
+def look_back(s: Contacts) -> None:
     """Compare with the velocities of now from now on."""
     copy(s.turn_velocity, s.velocity, s.n_r)
     clear(s.turn_impulse, s.n_r)
 
 
-def recurs(s: Rubbing) -> float:
+def recurs(s: Contacts) -> float:
     """The ratio in which the speeds of all contacts struck since have returned, where the rest can be summed.
 
-    `FOR_EVER` or more where they return without loss, the sliding of what rubs included.
+    `FOR_EVER` or more where they return without loss, the sliding of what rubs included. 0 as well where a contact
+    that touches would be struck before the others have come to rest.
     """
     n_j = s.n_j
+    for c in range(s.n_c):
+        s.noise(c)
     ratio = proportion(s.turn_impulse, after(s.turn_velocity, n_j), after(s.velocity, n_j), s.terms, s.n_c)
     if ratio >= FOR_EVER:
         return 0.0 if slows(s) else ratio
@@ -41,16 +41,12 @@ def recurs(s: Rubbing) -> float:
         if s.turn_impulse[c] > 0.0:
             if rubs(s, c) and not rubs_on(s, i + s.n_c, ratio):
                 return 0.0
-        elif (
-            s.mode[c] == OPEN
-            and s.touches[c] == 1
-            and left(s.turn_velocity[i], s.velocity[i], ratio) < -s.terms[c]
-        ):
-            return 0.0  # it will be struck before the others have come to rest
+        elif is_met(s, c) and left(s.turn_velocity[i], s.velocity[i], ratio) < -s.terms[c]:
+            return 0.0
     return ratio
 
 
-def slows(s: Rubbing) -> bool:
+def slows(s: Contacts) -> bool:
     """Whether friction of what has been struck since has changed its sliding, so that nothing returns for ever."""
     some = False
     for c in range(s.n_c):
@@ -60,36 +56,38 @@ def slows(s: Rubbing) -> bool:
     return some
 
 
-def rubs_on(s: Rubbing, i: int, ratio: float) -> bool:
+def rubs_on(s: Contacts, i: int, ratio: float) -> bool:
     """Whether friction on the tangent of row i goes on as in the turn: sliding one way, or to rest in proportion."""
     before, u = s.turn_velocity[i], s.velocity[i]
     return rests(s, i, ratio) or (u * left(before, u, ratio) > 0.0 and u * before > 0.0)
 
 
-def rests(s: Rubbing, i: int, ratio: float) -> bool:
+def rests(s: Contacts, i: int, ratio: float) -> bool:
     """Whether the velocity of row i goes to zero in the same proportion."""
     return abs(left(s.turn_velocity[i], s.velocity[i], ratio)) <= CERTAIN * abs(s.velocity[i])
 
 
-def sum_up(s: Rubbing, record: Record, tally: Tally, t: float, ratio: float) -> None:
+def sum_up(s: Contacts, record: Record, tally: Tally, ratio: float) -> None:
     """Take the impacts that are left as one: the contacts that they strike are closed."""
     rest, pushed = ratio / (1.0 - ratio), s.n_c + s.n_t
     for c in range(s.n_c):
         p = rest * s.turn_impulse[c]
         if p > 0.0:
             before = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
-            s.clock.log(record, tally, t, c, ACCUMULATION, before, 0.0, p)
+            s.log(record, tally, s.t0, c, ACCUMULATION, before, 0.0, p)
+            s.since[c], s.struck[c] = s.t0 - s.struck[c], s.t0
             if s.mode[c] == OPEN:
                 rough = rubs(s, c)
                 s.mode[c] = STICKS if rough and rests(s, s.n_j + s.n_c + c, ratio) else SLIDES
     for i in range(s.n_j):
-        apply(s, i, rest * s.turn_impulse[pushed + i])
+        s.push(i, rest * s.turn_impulse[pushed + i])
     for k in range(pushed):
-        apply(s, s.n_j + k, rest * s.turn_impulse[k])
-    take_speeds(s)
+        s.push(s.n_j + k, rest * s.turn_impulse[k])
+    s.stop()
+    look_back(s)
 
 
-def fades(s: Rubbing) -> bool:
+def fades(s: Contacts) -> bool:
     """Close the contacts that touch, if those that go on striking do so by next to nothing; whether it is so.
 
     Rounding adds up from impact to impact, and what is held from all sides may return its own rounding for ever.
@@ -97,19 +95,11 @@ def fades(s: Rubbing) -> bool:
     for c in range(s.n_c):
         u = s.velocity[s.n_j + c]
         u = abs(u) if s.turn_impulse[c] > 0.0 or s.mode[c] != OPEN else max(-u, 0.0)
-        if s.touches[c] == 1 and u > FAINT * s.terms[c]:
+        if (s.mode[c] != OPEN or is_met(s, c)) and u > FAINT * s.terms[c]:
             return False
     for c in range(s.n_c):
-        if s.mode[c] == OPEN and s.touches[c] == 1 and s.velocity[s.n_j + c] <= FAINT * s.terms[c]:
+        if is_met(s, c) and s.velocity[s.n_j + c] <= FAINT * s.terms[c]:
             s.mode[c] = SLIDES
-    take_speeds(s)
-    return True
-
-
-def take_speeds(s: Rubbing) -> None:
-    """Take their velocities from the closed contacts."""
-    if not hold_modes(s):
-        hold_joints(s.rows)
-    stop_rows(s)
-    measure_velocities(s, s.v)
+    s.stop()
     look_back(s)
+    return True

@@ -8,26 +8,26 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import OPEN
+from lcpstep.events.codes import OPEN
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import rubs
-    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.contacts import Contacts, rubs
     from lcpstep.events.rows.equations import size_of_acceleration
     from lcpstep.events.rows.loads import unload
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.coulomb import solve_contacts
     from lcpstep.kernels.vectors import clear
+    from lcpstep.pointers import Indices, after
 
 
-def row_of(s: Rubbing, a: int, n_a: int) -> int:
+def row_of(s: Contacts, a: int, n_a: int) -> int:
     """The row of unknown a of the problem: normals of n_a contacts, then tangents of those that may stick."""
     if a < n_a:
         return s.n_j + s.problem.ids[a]
     return s.n_j + s.n_c + s.problem.ids[s.problem.carrier[a - n_a]]
 
 
-def list_unknowns(s: Rubbing) -> tuple[int, int]:
+def list_unknowns(s: Contacts) -> tuple[int, int]:
     """The closed contacts into `ids`, those that may stick into `carrier`; how many of each."""
     n_a, n_f = 0, 0
     for c in range(s.n_c):
@@ -40,21 +40,22 @@ def list_unknowns(s: Rubbing) -> tuple[int, int]:
     return n_a, n_f
 
 
-def fill(s: Rubbing, n_a: int, n_f: int) -> None:
+def fill(s: Contacts, n_a: int, n_f: int) -> None:
     """The matrix of the problem, sliding friction in the columns of the normals."""
-    m, r = n_a + n_f, s.n_r
+    m, W = n_a + n_f, s.problem.mobility
     for a in range(m):
-        i = row_of(s, a, n_a)
+        row = after(s.S, row_of(s, a, n_a) * s.n_r)
         for b in range(m):
-            k = row_of(s, b, n_a)
-            share = 0.0
-            c = s.problem.ids[b] if b < n_a else -1
-            if c >= 0 and s.free[c] == 0 and rubs(s, c):
-                share = s.direction[c] * s.mu[c] * s.S[i * r + k + s.n_c]
-            s.problem.mobility[a * m + b] = s.S[i * r + k] - share
+            W[a * m + b] = row[row_of(s, b, n_a)]
+    for b in range(n_a if s.n_t > 0 else 0):
+        c = s.problem.ids[b]
+        if s.free[c] == 0 and rubs(s, c):
+            for a in range(m):
+                k = row_of(s, a, n_a) * s.n_r + row_of(s, b, n_a) + s.n_c
+                W[a * m + b] -= s.direction[c] * s.mu[c] * s.S[k]
 
 
-def solve_forces(s: Rubbing, n_a: int, n_f: int) -> bool:
+def solve_forces(s: Contacts, n_a: int, n_f: int) -> bool:
     """Forces for the accelerations in `rate`; where there are none, for those that rounding does not tell from them.
 
     What is held from both sides has two accelerations that are one but for its sign, each with a rounding of its own.
@@ -67,14 +68,14 @@ def solve_forces(s: Rubbing, n_a: int, n_f: int) -> bool:
     return found
 
 
-def allow(s: Rubbing, n_a: int, sign: float) -> None:
+def allow(s: Contacts, n_a: int, sign: float) -> None:
     """Raise, or lower, the accelerations of the normals by their rounding."""
     for a in range(n_a):
-        size = size_of_acceleration(s.rows, row_of(s, a, n_a), s.a)
+        size = size_of_acceleration(s, row_of(s, a, n_a), s.a)
         s.problem.rate[a] = s.problem.rate[a] + sign * NOISE * size
 
 
-def leave_independent(s: Rubbing, n_a: int) -> None:
+def leave_independent(s: Contacts, n_a: int, loaded: Indices) -> None:
     """Of contacts that all slide leave the load to independent ones: those held first push, whichever they are.
 
     Feet on a line share two normals, and the forces found may be of three.
@@ -83,9 +84,10 @@ def leave_independent(s: Rubbing, n_a: int) -> None:
     for a in range(n_a):
         c = s.problem.ids[a]
         s.curve[c] = s.problem.impulse[a]
-        slides = s.free[c] == 0 and rubs(s, c)
-        s.rows.share[s.n_j + c] = -s.direction[c] * s.mu[c] if slides else 0.0
-        s.rows.either[s.n_j + c] = 0
-    unload(s.rows, s.curve, s.new_loaded, s.n_c)
+        if s.n_t > 0:
+            slides = s.free[c] == 0 and rubs(s, c)
+            s.share[s.n_j + c] = -s.direction[c] * s.mu[c] if slides else 0.0
+            s.either[s.n_j + c] = 0
+    unload(s, s.curve, loaded, s.n_c)
     for a in range(n_a):
         s.problem.impulse[a] = s.curve[s.problem.ids[a]]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.codes import (
+from lcpstep.events.codes import (
     LEANS,
     OPEN,
     RELEASE,
@@ -17,35 +17,41 @@ from lcpstep.events.contacts.codes import (
 )
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import add_impulse, of_tangent, rubs, sliding
-    from lcpstep.events.contacts.state import Rubbing
+    from lcpstep.events.rows.contacts import Contacts, add_impulse, of_tangent, rubs, sliding
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.pointers import Doubles, abs, after, max
 
 
-def keep(s: Rubbing, record: Record, t: float, y: Doubles) -> None:
-    """Keep a state, and the impulses since the one before."""
+def keep(s: Contacts, record: Record, t: float, y: Doubles) -> None:
+    """Keep the state y = (q, v), and the impulses since the one before."""
     for c in range(s.n_c):
         if s.owed[c] != 0.0 or s.owed[s.n_c + c] != 0.0:
             pay(s, c)
     record.keep(t, 0.0, y, after(y, s.n_q), s.impulse)
 
 
-def pay(s: Rubbing, c: int) -> None:
-    """Pay what the end of chattering has taken on account, once the impulses of a row lie in the cone with it."""
+def pay(s: Contacts, c: int) -> None:
+    """Pay what the end of chattering has taken on account, once the impulses of a row lie in the cone with it.
+
+    Meanwhile those of each row pay for a part of it, however short the time that they are of.
+    """
     i, tangential = s.n_c + c, of_tangent(s, s.impulse, c)
     normal, friction = s.impulse[c] + s.owed[c], tangential + s.owed[i]
     noise = NOISE * (abs(tangential) + abs(s.owed[i]))
-    if normal >= 0.0 and abs(friction) <= s.mu_s[c] * normal + noise:
+    if normal >= 0.0 and (s.n_t == 0 or abs(friction) <= s.mu_s[c] * normal + noise):
         s.impulse[c] = normal
         if s.n_t > 0:
             s.impulse[i] = friction
         s.owed[c] = s.owed[i] = 0.0
+    elif normal < 0.0:
+        s.owed[c], s.owed[i], s.impulse[c] = normal, friction, 0.0
+        if s.n_t > 0:
+            s.impulse[i] = 0.0
 
 
-def put_on_account(s: Rubbing) -> None:
+def put_on_account(s: Contacts) -> None:
     """Impulses by row in `multiplier` belong to contacts that are closed from here on, not to this instant."""
     for i in range(s.n_j):
         add_impulse(s, i, s.multiplier[i])
@@ -53,15 +59,16 @@ def put_on_account(s: Rubbing) -> None:
         s.owed[i] = s.owed[i] + s.multiplier[s.n_j + i]
 
 
-def keep_event(s: Rubbing, record: Record, t: float) -> None:
+def keep_event(s: Contacts, record: Record, t: float) -> None:
     """Keep the state after an event, if these are kept; events at one time share a row."""
     if record.keeps_events():
         record.take_back(t, s.impulse)
-        keep(s, record, t, s.y)
+        keep(s, record, t, s.q)
 
 
-def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
-    """Log the contacts whose mode is another than when last told."""
+def tell(s: Contacts, record: Record, tally: Tally, t: float) -> bool:
+    """Log the contacts whose mode is another than when last told; whether one has closed."""
+    some = False
     for c in range(s.n_c):
         was, now, i = s.was_mode[c], s.mode[c], s.n_j + c
         now = STICKS if now == LEANS else now
@@ -69,19 +76,20 @@ def tell(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
         if (was == OPEN) != (now == OPEN):
             kind, when = RELEASE, t
             if was == OPEN:
-                kind, when = STAYS_CLOSED, max(t, s.chatter_end[c])
+                kind, when, some = STAYS_CLOSED, max(t, s.chatter_end[c]), True
             else:
                 s.chatter_end[c] = t
-            s.clock.log(record, tally, when, c, kind, 0.0, s.velocity[i], 0.0)
+            s.log(record, tally, when, c, kind, 0.0, s.velocity[i], 0.0)
         elif was == SLIDES and now == STICKS:
-            s.clock.log(record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)
+            s.log(record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)
         elif was == STICKS and now == SLIDES:
-            s.clock.log(record, tally, t, c, SLIP, 0.0, slip, 0.0)
+            s.log(record, tally, t, c, SLIP, 0.0, slip, 0.0)
         elif was == SLIDES and now == SLIDES and turned(s, c):
-            s.clock.log(record, tally, t, c, REVERSE, slip, slip, 0.0)
+            s.log(record, tally, t, c, REVERSE, slip, slip, 0.0)
         s.was_mode[c], s.was_direction[c] = now, s.direction[c]
+    return some
 
 
-def turned(s: Rubbing, c: int) -> bool:
+def turned(s: Contacts, c: int) -> bool:
     """Whether contact c slides the other way than when last told."""
     return rubs(s, c) and s.direction[c] != s.was_direction[c]

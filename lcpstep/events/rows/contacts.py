@@ -1,0 +1,302 @@
+"""Contacts as rows: what is known of each, and what happens to it, as kernels; both loops share this.
+
+    C_c = N_c - s mu T_c where contact c slides (sign s)
+
+What the modes hold is held in turn: joints, what sticks, normals that slide (those that carry a force first), see
+`held`. Without friction there are no tangents, and what is closed slides.
+Source: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (Wiley 1996), chapters 5 and 6.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cython
+import numpy as np
+
+from lcpstep.events.codes import BEGIN, LEANS, OPEN, SLIDES, STICKS
+
+if not cython.compiled:
+    from lcpstep.arrays import doubles, indices
+    from lcpstep.events.rows.equations import least_effect, other, size_of
+    from lcpstep.events.rows.held import constrain, hold, hold_joints, is_held
+    from lcpstep.events.rows.on_joints import can_bear
+    from lcpstep.events.rows.state import Rows
+    from lcpstep.kernels.clock import NOISE
+    from lcpstep.kernels.coulomb import ContactProblem
+    from lcpstep.kernels.together import gap_rounding
+    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
+
+STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
+
+
+class Contacts(Rows):
+    """Rows whose contacts open and close, stick and slide, strike and chatter.
+
+    next, culprit       what comes next: BEGIN, MOVE, ...; contact or joint that a failure is about, or -1
+    mapped              whether what forces do is known for the rows held, see `contacts.held`
+    problem             the complementarity problem at hand, of an impact or of forces
+    q, v : (n_q,)       the state at hand;  dv : (n_q,)   velocities on trial
+    a : (n_q,)          acceleration with constraints;  effect : (n_q + n_r,)   one on trial, and its
+    multiplier : (n_r,) forces by row
+    gap, velocity : (n_r,)   of rows at the state last measured;  curve : (n_c,)   gap accelerations
+    impulse : (n_r,)    contacts, tangents, joints, since the last kept state
+    turn_velocity, turn_impulse : (n_r,)   velocities some impacts of this instant ago; impulses since then
+    before : (n_c,)     gap velocities before the impact at hand, 0 of what is closed
+    terms : (2 n_c,)    rounding of gap and sliding velocities, at the impacts of one instant
+    owed : (2 n_c,)     impulses of normals and tangents that the end of chattering has taken on account
+    instant : (n_r,)    impulses since this instant has begun, whatever is kept
+    struck, since : (n_c,)       time of the last impact, since the one before
+    left, chatter_end : (n_c,)   how long the sequence that is summed up lasts, or -1; when it ends
+    mu, mu_s, rough : (n_c,)     friction of what slides and of what sticks; whether there is any
+    mode, was_mode, tried : (n_c,)      OPEN, STICKS, SLIDES, LEANS; as last told; while others are tried
+    direction, was_direction : (n_c,)   sign of the sliding velocity
+    loaded, free, touches : (n_c,)      carries a force; slides in no direction; gap zero, whatever it measures
+    parting : (n_c,)    opened by the forces between impacts of one instant
+    given               as of `Rows`
+    """
+
+    def __init__(self, *given: Any) -> None:
+        Rows.__init__(self, *given)
+        n, n_c, r = self.n_q, self.n_c, self.n_r
+        self.next, self.culprit, self.mapped = BEGIN, -1, False
+        self.problem = ContactProblem(np.zeros(n_c), self.n_t > 0, r, False)
+        self.contact_numbers = np.zeros(3 * n + 7 * r + 12 * n_c)
+        self.a = doubles(self.contact_numbers)
+        self.dv = after(self.a, n)
+        self.effect = after(self.dv, n)
+        self.multiplier = after(self.effect, n)
+        self.gap = after(self.multiplier, r)
+        self.velocity = after(self.gap, r)
+        self.impulse = after(self.velocity, r)
+        self.turn_impulse = after(self.impulse, r)
+        self.turn_velocity = after(self.turn_impulse, r)
+        self.instant = after(self.turn_velocity, r)
+        self.terms = after(self.instant, r)
+        self.owed = after(self.terms, 2 * n_c)
+        self.before = after(self.owed, 2 * n_c)
+        self.curve = after(self.before, n_c)
+        self.struck = after(self.curve, n_c)
+        self.since = after(self.struck, n_c)
+        self.left = after(self.since, n_c)
+        self.chatter_end = after(self.left, n_c)
+        self.direction = after(self.chatter_end, n_c)
+        self.was_direction = after(self.direction, n_c)
+        self.marks = np.zeros(7 * n_c, dtype=np.intp)
+        self.mode = indices(self.marks)
+        self.was_mode = indices_after(self.mode, n_c)
+        self.tried = indices_after(self.was_mode, n_c)
+        self.loaded = indices_after(self.tried, n_c)
+        self.free = indices_after(self.loaded, n_c)
+        self.touches = indices_after(self.free, n_c)
+        self.parting = indices_after(self.touches, n_c)
+        # Of their owner: the state, and friction, if there is any
+        self.q, self.v, self.mu, self.mu_s, self.rough = self.a, self.dv, self.before, self.before, self.free
+        for c in range(n_c):
+            self.struck[c] = self.chatter_end[c] = -inf
+
+    def noise(self, c: int) -> float:
+        """Rounding of the gap velocity of contact c, that of the earlier impacts of the same instant included."""
+        return self.terms[c]
+
+    def rounding_of_gap(self, c: int) -> float:
+        """Rounding of gap c at the state at hand, as far as its terms are known."""
+        R = after(self.R, self.n_j * self.n_q)
+        return gap_rounding(self.model, R, self.q, c, abs(self.gap[self.n_j + c]))
+
+    def mode_closed(self, c: int) -> int:
+        """The mode in which contact c would be closed: it slides on, if it does."""
+        slides = not rubs(self, c) or abs(sliding(self, c)) > still(self, self.n_j + self.n_c + c)
+        return SLIDES if slides else STICKS
+
+    def push(self, i: int, p: float) -> None:
+        """Apply the impulse p on row i, and count it.
+
+        Of what impulses make of a velocity, and take from it again, rounding is left.
+        """
+        for j in range(self.n_q):
+            self.v[j] += self.MR[i * self.n_q + j] * p
+        for k in range(self.n_c + self.n_t):
+            self.terms[k] = max(self.terms[k], NOISE * abs(self.D[(self.n_j + k) * self.n_r + i] * p))
+        add_impulse(self, i, p)
+
+    def stop(self) -> None:
+        """Take their velocities from the closed contacts, or from joints alone where these cannot be held."""
+        if not hold_modes(self):
+            hold_joints(self)
+        stop_rows(self)
+        measure_velocities(self, self.v)
+
+    def closed_ones(self) -> list[int]:
+        """The contacts that are closed."""
+        return [c for c in range(self.n_c) if self.mode[c] != 0]
+
+
+def gap_of(s: Contacts, c: int) -> float:
+    """The gap of contact c, which is zero where it touches, whatever it measures."""
+    return 0.0 if s.touches[c] == 1 else s.gap[s.n_j + c]
+
+
+def is_met(s: Contacts, c: int) -> bool:
+    """Whether contact c is open and touches."""
+    return s.mode[c] == OPEN and gap_of(s, c) == 0.0
+
+
+def add_impulse(s: Contacts, i: int, p: float) -> None:
+    """Count an impulse of row i: contacts are kept first, then tangents and joints."""
+    k = i - s.n_j if i >= s.n_j else s.n_c + s.n_t + i
+    s.impulse[k] = s.impulse[k] + p
+    # Of their own: differences would depend on what has been kept
+    s.turn_impulse[k], s.instant[k] = s.turn_impulse[k] + p, s.instant[k] + p
+
+
+def measure_velocities(s: Contacts, v: Doubles) -> None:
+    """Velocities R v + rate of all rows; `terms` of contacts and tangents grow to their rounding.
+
+    Nor is more known of a velocity than what the forces make of it in a time that cannot be told: of what has come to
+    rest on its obstacles something is left, smaller at each impact, that means nothing.
+    """
+    moment = s.untold(0.0)
+    for i in range(s.n_r):
+        s.velocity[i] = product(s.R, v, i, s.n_q) + s.rate[i]
+    for i in range(s.n_c + s.n_t):
+        k = s.n_j + i
+        unknown = moment * size_of(s, k, 0.0, s.a_free)
+        s.terms[i] = max(s.terms[i], NOISE * size_of(s, k, s.rate[k], v) + unknown)
+
+
+def gap_tolerance(s: Contacts, c: int) -> float:
+    """The gap of contact c that goes without moving a coordinate by more than its tolerance."""
+    return least_effect(s, s.n_j + c, s.q)
+
+
+def speed_tolerance(s: Contacts, i: int) -> float:
+    """The velocity of row i that goes without changing a velocity by more than its tolerance."""
+    return least_effect(s, i, s.v)
+
+
+def still(s: Contacts, i: int) -> float:
+    """The velocity of row i below which it is zero."""
+    return NOISE * size_of(s, i, s.rate[i], s.v) + STILL * speed_tolerance(s, i)
+
+
+def rubs(s: Contacts, c: int) -> bool:
+    """Whether contact c may have friction: one whose normal the joints hold already bears nothing to rub with."""
+    return s.n_t > 0 and s.rough[c] == 1 and can_bear(s, c)
+
+
+def sliding(s: Contacts, c: int) -> float:
+    """The sliding velocity of contact c as last measured; 0 without friction, where there are no tangents."""
+    return s.velocity[s.n_j + s.n_c + c] if s.n_t > 0 else 0.0
+
+
+def of_tangent(s: Contacts, x: Doubles, c: int) -> float:
+    """Of impulses of contacts, then tangents, that of the tangent of contact c; 0 where there are none."""
+    return x[s.n_c + c] if s.n_t > 0 else 0.0
+
+
+def pull(s: Contacts, i: int) -> float:
+    """How much of the `other` force of its contact comes with that of row i.
+
+    -s mu of the tangent's with a normal that slides or leans; the inverse of the normal's where the tangent of a
+    contact that leans is held.
+    """
+    c = i - s.n_j
+    if 0 <= c < s.n_c and s.mode[c] >= SLIDES:
+        return -s.direction[c] * (s.mu[c] if s.mode[c] == SLIDES else s.mu_s[c])
+    c -= s.n_c
+    return -s.direction[c] / s.mu_s[c] if c >= 0 and s.mode[c] == LEANS else 0.0
+
+
+def leans(s: Contacts, i: int) -> bool:
+    """Whether row i is of a contact that leans on others."""
+    return i >= s.n_j and s.mode[(i - s.n_j) % s.n_c] == LEANS
+
+
+def hold_row(s: Contacts, i: int) -> bool:
+    """Add row i to the rows held, unless it depends on them; False where sliding takes its force away.
+
+    Of what leans on others the sign tells nothing: it does not slide.
+    """
+    if s.n_t > 0:
+        s.share[i], s.either[i] = pull(s, i), 1 if leans(s, i) else 0
+    return hold(s, i)
+
+
+def hold_modes(s: Contacts) -> bool:
+    """Hold what the modes hold; False where a sliding contact has no force that would (`culprit`).
+
+    What sticks comes first: it may carry what a contact that leans on it, or slides beside it, could not by itself.
+    """
+    s.mapped = False
+    hold_joints(s)
+    for tangent in range(2 if s.n_t > 0 else 0):
+        for c in range(s.n_c):
+            if s.mode[c] == STICKS:
+                hold_row(s, s.n_j + tangent * s.n_c + c)
+    for unloaded in range(2):
+        for c in range(s.n_c):
+            if s.mode[c] >= SLIDES and s.loaded[c] == 1 - unloaded and not hold_row(s, s.n_j + c):
+                s.culprit = c
+                return False
+        if unloaded == 0 and s.n_t > 0:
+            hold_leaning(s)
+    return True
+
+
+def hold_leaning(s: Contacts) -> None:
+    """The tangents of loaded contacts that lean, whose normals depend on the rows held.
+
+    Three feet on a line share two normals and one tangent: their forces are known from these three rows.
+    """
+    for c in range(s.n_c):
+        i = s.n_j + c
+        if s.mode[c] == LEANS and s.loaded[c] == 1 and not is_held(s, i):
+            hold_row(s, i + s.n_c)
+
+
+def accelerate_on_joints(s: Contacts) -> None:
+    """The acceleration with the joints alone held, into `a`; everything must be measured."""
+    copy(s.a, s.a_free, s.n_q)
+    hold_joints(s)
+    constrain(s, s.a, s.bias)
+
+
+def accelerate_as_held(s: Contacts) -> None:
+    """The acceleration with the rows held, into `a`, and multipliers by row; everything must be measured."""
+    copy(s.a, s.a_free, s.n_q)
+    constrain(s, s.a, s.bias)
+    list_multipliers(s)
+
+
+def list_multipliers(s: Contacts) -> None:
+    """Forces by row from those of the rows held: the friction of sliding contacts on their tangents."""
+    clear(s.multiplier, s.n_r)
+    for m in range(s.n_held):
+        i = s.row[m]
+        s.multiplier[i] = s.multiplier[i] + s.held[m]
+        share = s.share[i]
+        if share != 0.0:
+            s.multiplier[other(s, i)] = s.multiplier[other(s, i)] + share * s.held[m]
+
+
+def stop_rows(s: Contacts) -> None:
+    """Impulses on the rows held, sliding friction included, that take their velocities."""
+    constrain(s, s.v, s.rate)
+    count_impulses(s, s.held)
+
+
+def take_velocities(s: Contacts) -> None:
+    """The same, not counted, but by row into `multiplier`."""
+    constrain(s, s.v, s.rate)
+    list_multipliers(s)
+
+
+def count_impulses(s: Contacts, x: Doubles) -> None:
+    """Count impulses of the rows held, with the friction of those that slide."""
+    for m in range(s.n_held):
+        i = s.row[m]
+        add_impulse(s, i, x[m])
+        if s.share[i] != 0.0:
+            add_impulse(s, other(s, i), s.share[i] * x[m])
