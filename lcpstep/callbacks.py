@@ -199,7 +199,7 @@ def _names(f: FunctionType) -> set[str]:
 def _compiled(f: FunctionType, arguments: tuple[Any, ...], nrt: bool) -> Any:
     """C function of f, with numba's counting of references where f makes arrays or lists; that takes longer."""
     from lcpstep.guarded import Guarded, Wrapped, array
-    from lcpstep.kept import OnDisk
+    from lcpstep.machine_code import OnDisk
 
     options = OPTIONS | {"_nrt": nrt}
     parts = Wrapped.create_cfunc_wrapper, array

@@ -37,7 +37,7 @@ class Rubbing(RungeKutta):
     constant                     M, the rows and coefficients of friction never change
     plain                        no function of the user's is in it
     n_t                          tangents: n_c, or none without friction
-    a, a_free, force, R, MR, W, S, rate, bias, gap, velocity, multiplier, effect, impulse, change, dv, problem, mu,
+    a, a_free, force, R, MR, W, rate, bias, gap, velocity, multiplier, effect, impulse, change, dv, problem, mu,
     mu_s, terms, instant, before, direction, mode, was_mode, tried, loaded, free, touches, parting   of `rows`; W is D
     q, v : (n_q,)                state at the base time, of which `rows` knows too
     slip : (n_c,)                sliding velocities that coefficients of friction depend on
@@ -112,7 +112,7 @@ class Rubbing(RungeKutta):
         shared.mu, shared.mu_s = self.coefficients.sliding, self.coefficients.sticking
         self.q, self.v, self.mu, self.mu_s = shared.q, shared.v, shared.mu, shared.mu_s
         self.a_free, self.force, self.a, self.dv = shared.a_free, shared.force, shared.a, shared.dv
-        self.R, self.MR, self.W, self.S = shared.R, shared.MR, shared.D, shared.S
+        self.R, self.MR, self.W = shared.R, shared.MR, shared.D
         self.rate, self.bias, self.shifted_rate = shared.rate, shared.bias, shared.near
         self.change, self.multiplier, self.effect = shared.change, shared.multiplier, shared.effect
         self.gap, self.velocity, self.terms = shared.gap, shared.velocity, shared.terms

@@ -37,9 +37,8 @@ class Contacts(Rows):
     next, culprit       what comes next: BEGIN, MOVE, ...; contact or joint that a failure is about, or -1
     mapped              whether what forces do is known for the rows held, see `contacts.held`
     problem             the complementarity problem at hand, of an impact or of forces
-    q, v : (n_q,)       the state at hand;  dv : (n_q,)   velocities on trial
-    a : (n_q,)          acceleration with constraints;  effect : (n_q + n_r,)   one on trial, and its
-    multiplier : (n_r,) forces by row
+    q, v, a : (n_q,)    state at hand, and acceleration with constraints;  multiplier : (n_r,)   forces by row
+    dv : (n_q,), effect : (n_q + n_r,)   velocities on trial; such an acceleration and its multipliers
     gap, velocity : (n_r,)   of rows at the state last measured;  curve : (n_c,)   gap accelerations
     impulse : (n_r,)    contacts, tangents, joints, since the last kept state
     turn_velocity, turn_impulse : (n_r,)   velocities some impacts of this instant ago; impulses since then
@@ -111,10 +110,7 @@ class Contacts(Rows):
         return SLIDES if slides else STICKS
 
     def push(self, i: int, p: float) -> None:
-        """Apply the impulse p on row i, and count it.
-
-        Of what impulses make of a velocity, and take from it again, rounding is left.
-        """
+        """Apply the impulse p on row i, and count it; what is taken from velocities again leaves rounding."""
         for j in range(self.n_q):
             self.v[j] += self.MR[i * self.n_q + j] * p
         for k in range(self.n_c + self.n_t):
@@ -134,7 +130,7 @@ class Contacts(Rows):
 
 
 def gap_of(s: Contacts, c: int) -> float:
-    """The gap of contact c, which is zero where it touches, whatever it measures."""
+    """The gap of contact c, zero where it touches."""
     return 0.0 if s.touches[c] == 1 else s.gap[s.n_j + c]
 
 

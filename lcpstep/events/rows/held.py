@@ -40,13 +40,13 @@ def is_held(s: Rows, i: int) -> bool:
 
 def entry(s: Rows, i: int, k: int) -> float:
     """Row i of R M^-1 times column k of C^T; of contacts and tangents on the joints held."""
-    W = s.S if i >= s.n_j and k >= s.n_j else s.D
+    W = s.D_on if i >= s.n_j and k >= s.n_j else s.D
     d = W[i * s.n_r + k]
     return d if s.share[k] == 0.0 else d + s.share[k] * W[i * s.n_r + other(s, k)]
 
 
 def first_between(s: Rows, i: int, k: int) -> int:
-    """The first of the rows held that is still between rows i and k: `S` knows what joints are between contacts."""
+    """The first of the rows held still between rows i and k: `D_on` knows what joints are between contacts."""
     return s.n_kept if i >= s.n_j and k >= s.n_j else 0
 
 

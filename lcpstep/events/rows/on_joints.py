@@ -2,6 +2,8 @@
 
     P_i = R_i - sum_j share_ij P_j  over the joints j held,      P_i M^-1 P_j^T = 0,      S = P M^-1 P^T
 
+written R_on and D_on here, M^-1 P^T as MR_on.
+
 Where a normal is nearly that of a joint, the difference of Delassus matrices, D - D_J D_JJ^-1 D_J^T, keeps nothing
 of it but rounding, which may be negative: contacts then had no forces, or were passed. S is made of the rows that
 are left instead. Source: G. Golub, C. Van Loan, Matrix Computations, algorithm 5.2.6 (modified Gram-Schmidt).
@@ -26,9 +28,9 @@ TOLD, TURNED = 1e-9, 1e-6
 
 
 def leave_joints(s: Rows) -> None:
-    """P and S on the joints held, and the biases that belong to them, into `bent`."""
+    """Rows and their Delassus matrix on the joints held, and the biases that belong to them."""
     s.on_joints = True
-    for i in range(s.n_j, s.n_r if s.n_j > 0 else 0):  # without joints S is D, and P is R
+    for i in range(s.n_j, s.n_r if s.n_j > 0 else 0):  # without joints they are R and D
         put_on_joints(s, i)
         for k in range(s.n_j, i + 1):
             couple_on_joints(s, i, k)
@@ -51,9 +53,9 @@ def leave_joints_again(s: Rows, count: int) -> None:
 
 
 def couple_on_joints(s: Rows, i: int, k: int) -> None:
-    """Rows i and k of S."""
+    """Rows i and k of the Delassus matrix on the joints."""
     i, k = (i, k) if i > k else (k, i)
-    s.S[i * s.n_r + k] = s.S[k * s.n_r + i] = product(s.P, after(s.MP, k * s.n_q), i, s.n_q)
+    s.D_on[i * s.n_r + k] = s.D_on[k * s.n_r + i] = product(s.R_on, after(s.MR_on, k * s.n_q), i, s.n_q)
 
 
 def put_on_joints(s: Rows, i: int) -> None:
@@ -61,33 +63,33 @@ def put_on_joints(s: Rows, i: int) -> None:
 
     M^-1 P_i^T is that of the row that is left: a difference of two such would be off from it by rounding of both.
     """
-    n, row, way = s.n_q, after(s.P, i * s.n_q), after(s.MP, i * s.n_q)
+    n, row, way = s.n_q, after(s.R_on, i * s.n_q), after(s.MR_on, i * s.n_q)
     copy(row, after(s.R, i * n), n)
-    s.bent[i] = s.bias[i]
+    s.bias_on[i] = s.bias[i]
     for m in range(s.n_kept):
         j = s.row[m]
-        share = product(s.P, after(s.MP, j * n), i, n) / s.S[j * s.n_r + j]
+        share = product(s.R_on, after(s.MR_on, j * n), i, n) / s.D_on[j * s.n_r + j]
         if share != 0.0:
-            add(row, -share, after(s.P, j * n), n)
-            s.bent[i] = s.bent[i] - share * s.bent[j]
+            add(row, -share, after(s.R_on, j * n), n)
+            s.bias_on[i] = s.bias_on[i] - share * s.bias_on[j]
     response(s.model, s.M, s.work, row, way)
-    s.S[i * s.n_r + i] = product(s.P, way, i, n)
-    if i >= s.n_j and s.S[i * s.n_r + i] <= (SAME if s.fixed else DEPENDENT) * s.D[i * s.n_r + i]:
+    s.D_on[i * s.n_r + i] = product(s.R_on, way, i, n)
+    if i >= s.n_j and s.D_on[i * s.n_r + i] <= (SAME if s.fixed else DEPENDENT) * s.D[i * s.n_r + i]:
         clear(row, n)
         clear(way, n)
-        s.S[i * s.n_r + i] = 0.0
+        s.D_on[i * s.n_r + i] = 0.0
 
 
 def can_bear(s: Rows, c: int) -> bool:
     """Whether the joints leave anything of contact c's normal."""
     i = s.n_j + c
-    return s.S[i * s.n_r + i] > 0.0
+    return s.D_on[i * s.n_r + i] > 0.0
 
 
 def acceleration_on_joints(s: Rows, i: int, a: Doubles) -> float:
     """The acceleration of contact or tangent row i under a, which the joints allow."""
-    if s.S[i * s.n_r + i] > 0.0:
-        return product(s.P, a, i, s.n_q) + s.bent[i]
+    if s.D_on[i * s.n_r + i] > 0.0:
+        return product(s.R_on, a, i, s.n_q) + s.bias_on[i]
     alpha, size = s.bias[i], abs(s.bias[i])
     for k in range(s.n_q):
         alpha += s.R[i * s.n_q + k] * a[k]

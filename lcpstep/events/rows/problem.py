@@ -44,7 +44,7 @@ def fill(s: Contacts, n_a: int, n_f: int) -> None:
     """The matrix of the problem, sliding friction in the columns of the normals."""
     m, W = n_a + n_f, s.problem.mobility
     for a in range(m):
-        row = after(s.S, row_of(s, a, n_a) * s.n_r)
+        row = after(s.D_on, row_of(s, a, n_a) * s.n_r)
         for b in range(m):
             W[a * m + b] = row[row_of(s, b, n_a)]
     for b in range(n_a if s.n_t > 0 else 0):
@@ -52,7 +52,7 @@ def fill(s: Contacts, n_a: int, n_f: int) -> None:
         if s.free[c] == 0 and rubs(s, c):
             for a in range(m):
                 k = row_of(s, a, n_a) * s.n_r + row_of(s, b, n_a) + s.n_c
-                W[a * m + b] -= s.direction[c] * s.mu[c] * s.S[k]
+                W[a * m + b] -= s.direction[c] * s.mu[c] * s.D_on[k]
 
 
 def solve_forces(s: Contacts, n_a: int, n_f: int) -> bool:

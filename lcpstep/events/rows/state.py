@@ -33,7 +33,7 @@ class Rows(Clock):
     either : (n_r,)           whether a row may be held though its force alone would move it the other way
     L : (n_r, n_r)            factors of the matrix of the rows held;  doubt   relative error of a pivot, in roundings
     rests : (n_r,)            whether the velocity of a row is to be zero, held or not: of joints always
-    P, MP : (n_r, n_q), S : (n_r, n_r), bent : (n_r,)   R, MR, D and bias on the joints held, see `on_joints`
+    R_on, MR_on, D_on, bias_on   R, MR, D and bias of what is left of the rows on the joints held, see `on_joints`
     on_joints                 whether these are known
     fixed, moving, known      rows and masses never change; flat obstacles move; fixed rows have been measured
     work, shifted : (n_q,);  near, further, change : (n_r,);  G : (n_r, n_q)   work space
@@ -85,12 +85,12 @@ class Rows(Clock):
         self.share = after(self.change, r)
         self.doubt = after(self.share, r)
         self.L = after(self.doubt, r)
-        self.bent, self.P, self.MP, self.S = self.bias, self.R, self.MR, self.D
+        self.bias_on, self.R_on, self.MR_on, self.D_on = self.bias, self.R, self.MR, self.D
         if n_j > 0:
-            self.bent = after(self.L, r * r)
-            self.P = after(self.bent, r)
-            self.MP = after(self.P, r * n)
-            self.S = after(self.MP, r * n)
+            self.bias_on = after(self.L, r * r)
+            self.R_on = after(self.bias_on, r)
+            self.MR_on = after(self.R_on, r * n)
+            self.D_on = after(self.MR_on, r * n)
         self.row_list = np.zeros(3 * r, dtype=np.intp)
         self.row = indices(self.row_list)
         self.either = indices_after(self.row, r)

@@ -55,7 +55,7 @@ def entries(folder):
 
 def from_disk(f, ndim=1):
     """Whether machine code of the function was found; it must be right."""
-    from lcpstep.kept import OnDisk
+    from lcpstep.machine_code import OnDisk
 
     found, load = [], OnDisk.load_overload
 
@@ -103,12 +103,12 @@ def test_machine_code_of_a_file_that_was_run_is_found_again_and_nothing_is_impor
 
 
 def test_other_types_and_other_tools_have_their_own(load, tmp_path, monkeypatch):
-    from lcpstep import kept
+    from lcpstep import machine_code
 
     assert not from_disk(load().double)
     assert not from_disk(load().double, ndim=2)
     assert from_disk(load().double, ndim=2)
-    monkeypatch.setattr(kept, "toolchain", lambda: "another version of numba")
+    monkeypatch.setattr(machine_code, "toolchain", lambda: "another version of numba")
     assert not from_disk(load().double)
     assert len(entries(tmp_path)) == 3
 
@@ -134,7 +134,7 @@ def test_a_damaged_entry_is_said_and_made_again(load, tmp_path, caplog, damage):
 
 
 def test_no_flipped_bit_passes(load, tmp_path):
-    from lcpstep.kept import own_number, read
+    from lcpstep.machine_code import own_number, read
 
     from_disk(load().double)
     (entry,) = entries(tmp_path)
@@ -156,9 +156,9 @@ def close(tmp_path):
 @pytest.fixture
 def silent(monkeypatch):
     """As if nothing had been said before in this process."""
-    from lcpstep import kept
+    from lcpstep import machine_code
 
-    monkeypatch.setattr(kept, "TOLD", [])
+    monkeypatch.setattr(machine_code, "TOLD", [])
 
 
 @pytest.mark.skipif(os.name == "nt", reason="folders for temporary files are the user's own there")
