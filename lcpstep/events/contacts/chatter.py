@@ -11,8 +11,6 @@ import cython
 from lcpstep.events.codes import OPEN, SLIDES, STICKS
 
 if not cython.compiled:
-    from math import sqrt
-
     from lcpstep.events.contacts.equations import measure
     from lcpstep.events.contacts.held import know_rows
     from lcpstep.events.contacts.impact import find_free
@@ -20,7 +18,6 @@ if not cython.compiled:
     from lcpstep.events.rows.chatter import (
         disturbs,
         find_over,
-        interrupted,
         just_opened,
         meets,
         passes_on,
@@ -38,7 +35,6 @@ if not cython.compiled:
         still,
         take_velocities,
     )
-    from lcpstep.events.rows.equations import least_effect
     from lcpstep.events.rows.held import constrain
     from lcpstep.events.rows.keep import put_on_account
     from lcpstep.kernels.clock import NOISE
@@ -65,7 +61,7 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
     for c in range(s.n_c):
         if s.rows.left[c] >= 0.0:
             tell_over(s.rows, record, tally, c)
-            close(s, c, rests(s, c))
+            close(s, c)
     for c in range(
         s.n_c
     ):  # the forces decide about those too that the others, closed, have left without speed
@@ -73,21 +69,6 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
             s.mode[c] = SLIDES
     find_free(s)
     return True
-
-
-def rests(s: Rubbing, c: int) -> bool:
-    """Whether contact c slides by no more than forces make within hops that are left out: that goes with these.
-
-    It matters where what slides has less friction than what sticks, and would go on. Not where others hop on.
-    """
-    i = s.n_j + s.n_c + c
-    if not (rubs(s.rows, c) and s.mu_s[c] > s.mu[c]):
-        return False
-    pull = abs(product(s.R, s.a, i, s.n_q) + s.bias[i])
-    most = sqrt(2.0 * pull * least_effect(s.rows, i, s.q))
-    if abs(sliding(s.rows, c)) > max(most, still(s.rows, i)):
-        return False
-    return pull == 0.0 or not interrupted(s.rows, c, most / pull)
 
 
 def stops_others(s: Rubbing, c: int, T: float) -> bool:
@@ -139,12 +120,12 @@ def later(s: Rubbing, c: int, t: float, T: float) -> float:
     return curve
 
 
-def close(s: Rubbing, c: int, at_rest: bool) -> None:
-    """Take the velocity of contact c, which slides on as before, unless that stops it; or its sliding, too."""
+def close(s: Rubbing, c: int) -> None:
+    """Take the velocity of contact c, which slides on as before, unless that stops it."""
     i = s.n_j + s.n_c + c
     slip, rough = sliding(s.rows, c), rubs(s.rows, c)
     s.loaded[c], s.direction[c] = 1, 1.0 if slip >= 0.0 else -1.0
-    s.mode[c] = STICKS if at_rest else s.rows.mode_closed(c)
+    s.mode[c] = s.rows.mode_closed(c)
     if s.mode[c] == SLIDES and rough and not slides_on(s, i, slip):
         s.mode[c] = STICKS
     if not hold_modes(s.rows):  # sliding on would take the others' forces away: in a wedge all come to rest
@@ -153,7 +134,7 @@ def close(s: Rubbing, c: int, at_rest: bool) -> None:
         hold_modes(s.rows)
     copy(s.seen, s.v, s.n_q)
     take_velocities(s.rows)
-    if not at_rest and leaves_cone(s, c):
+    if leaves_cone(s, c):
         take_back(s, c)
     put_on_account(s.rows)
     measure_velocities(s.rows, s.v)
