@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Coulomb, Harmonic, LinearContacts, LinearSystem, Scene
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, Scene
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
 from lcpstep.gaps import closing_in
 from tests.marks import shared
@@ -257,3 +257,26 @@ def test_obstacles_that_leave_room_are_not_blamed():
     )
     scene = Scene(LinearSystem(M=np.eye(2)), (0.0, 1.0), (0.0, 0.0), (0.0, 1.0), wedge)
     assert closing_in(scene, 0.5, np.zeros(2), [0, 1]) == []
+
+
+def test_a_corner_with_a_wall_nearly_along_the_way_is_one_impact():
+    """A body slides along one of three walls, by a joint in space, to the point where they meet.
+
+    It nears the second wall 285 times as slowly as the third; whatever steps have led there, it strikes all at once.
+    """
+    system = LinearSystem(
+        M=np.diag([7.2365, 0.1543, 0.8096]),
+        K=[[1.3639, 0.8088, 0.2856], [0.8088, 1.3629, 0.6454], [0.2856, 0.6454, 0.4615]],
+        force=Harmonic(constant=[-3.6975, 7.5923, 6.5942], cosine=[-1.5456, -0.553, -0.4225], omega=3.4614),
+    )
+    walls = LinearContacts([[0.0, -1.14, -0.915], [0.33, -0.43, 0.03], [1.52, -0.49, -0.99]], restitution=0.5)
+    joint = LinearJoints([[1.12, -0.18, -0.87]])
+    v0 = [(0.18 * -1.474 + 0.87 * -0.143) / 1.12, -1.474, -0.143]
+
+    def after_it(method, t_end):
+        scene = Scene(system, np.zeros(3), v0, (0.0, t_end), contacts=walls, joints=joint)
+        return simulate(scene, method, keep=[0.75]).q[-1]
+
+    expected = after_it(Located(1e-3, order=4), 0.8)
+    for t_end in np.linspace(0.8, 3.0, 200):
+        np.testing.assert_allclose(after_it(EventDriven(), float(t_end)), expected, rtol=0, atol=1e-9)
