@@ -62,9 +62,7 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
         if s.rows.left[c] >= 0.0:
             tell_over(s.rows, record, tally, c)
             close(s, c)
-    for c in range(
-        s.n_c
-    ):  # the forces decide about those too that the others, closed, have left without speed
+    for c in range(s.n_c):  # of those that the others, closed, have left without speed the forces decide
         if just_opened(s.rows, c):
             s.mode[c] = SLIDES
     find_free(s)

@@ -80,6 +80,8 @@ def leave_independent(s: Contacts, n_a: int, loaded: Indices) -> None:
 
     Feet on a line share two normals, and the forces found may be of three.
     """
+    if n_a < 2:  # one depends on no other
+        return
     clear(s.curve, s.n_c)
     for a in range(n_a):
         c = s.problem.ids[a]
