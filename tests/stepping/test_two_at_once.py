@@ -1,10 +1,10 @@
-"""Two feet that meet a moving table at one instant, at any time: no rounding of that time strikes them in turn."""
+"""What comes to several obstacles at one instant strikes them together, whatever rounding makes of that instant."""
 
 import numpy as np
 import pytest
 
 from lagrangian import LinearContacts, LinearSystem, Scene
-from lcpstep import EventDriven, Located, simulate
+from lcpstep import EventDriven, Located, Moreau, simulate
 
 OMEGA, AMPLITUDE = 13.0, 0.03
 
@@ -39,3 +39,40 @@ def test_feet_strike_together_a_day_from_zero_too(method):
         for c in (0, 1):
             own, other = struck[struck["contact"] == c][0], first[first["contact"] == c][0]
             np.testing.assert_allclose(own["after"], other["after"], atol=1e-4)
+
+
+def corner(seed, before):
+    """A point in the corner of some walls, or on its way to all of them, and the speeds of their gaps."""
+    rng = np.random.default_rng(seed)
+    n, k = int(rng.integers(2, 5)), int(rng.integers(2, 5))
+    G, A, v0 = rng.normal(size=(k, n)), rng.normal(size=(n, n)), 2.0 * rng.normal(size=n)
+    restitution, force = rng.uniform(0.1, 0.9, k), 3.0 * rng.normal(size=n)
+    if before > 0.0:
+        G, force = -np.sign(G @ v0)[:, None] * G, np.zeros(n)
+    system = LinearSystem(A @ A.T + np.eye(n), force=force)
+    walls = LinearContacts(G, restitution=restitution)
+    return Scene(system, -before * v0, v0, (0.0, 0.5), contacts=walls), G @ v0
+
+
+# Where walls in their turn are struck by the body that comes from others; seeds: of such scenes
+@pytest.mark.parametrize("method", [Located(1e-3), Located(1e-2, 4), Located(1e-2, "exact")], ids=str)
+@pytest.mark.parametrize("seed", [10, 46, 48, 76, 122, 124, 166, 183, 231, 271, 316])
+def test_walls_of_a_corner_strike_together_from_its_apex_on(seed, method):
+    """One and the same instant, as far as it goes: no wall has been left, nor is one further away than another."""
+    scene, _ = corner(seed, 0.0)
+    expected, run = (simulate(scene, m, keep=[0.5]) for m in (EventDriven(), method))
+    np.testing.assert_allclose(run.q, expected.q, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("method", [Located(1e-3), Located(1e-2, 4), EventDriven()], ids=str)
+def test_a_corner_is_struck_as_one_whatever_the_speeds_of_its_walls(method):
+    """Moreau's steps, in which all contacts of a step are struck together, tell what becomes of the motion."""
+    tried = 0
+    for seed in range(300):
+        scene, u = corner(seed, 0.1)
+        if 1e-3 < np.max(u) / np.min(u) < 0.1:
+            end = simulate(scene, Moreau(1e-5), keep=[0.5]).q
+            run = simulate(scene, method, keep=[0.5])
+            np.testing.assert_allclose(run.q, end, rtol=0, atol=1e-3, err_msg=str(seed))
+            tried += 1
+    assert tried > 20

@@ -23,8 +23,9 @@ if not cython.compiled:
     from lcpstep.kernels.recurrence import FOR_EVER, looks_back
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.together import order_matters
-    from lcpstep.pointers import abs
+    from lcpstep.pointers import abs, max
 
+CROSSED = 1000.0  # roundings of a gap: so far off it may be while another one crosses its own
 ROUNDS = 100_000  # problems of impacts at one instant
 
 
@@ -101,12 +102,12 @@ def rejoin(s: Mechanism) -> None:
 def approaches(s: Mechanism) -> bool:
     """Whether a contact on the surface approaches it; one there without speed to rounding is closed."""
     hit = False
+    find_come(s)
     for c in range(s.n_c):
         u = s.velocity[s.n_j + c]
-        if s.mode[c] == OPEN and (s.gap[s.n_j + c] == 0.0 or has_come(s, c)):
+        if s.mode[c] == OPEN and s.gap[s.n_j + c] == 0.0:
             noise = s.noise(c)
             if u <= noise:
-                s.gap[s.n_j + c] = 0.0
                 if u < -noise:
                     s.parting[c] = 0
                 elif s.parting[c] == 0:
@@ -116,19 +117,35 @@ def approaches(s: Mechanism) -> bool:
     return hit
 
 
+def find_come(s: Mechanism) -> None:
+    """Gaps that count as closed are zero; of two that matter to each other by a third one, both."""
+    more = True
+    while more:
+        more = False
+        for c in range(s.n_c):
+            i = s.n_j + c
+            if s.mode[c] == OPEN and s.gap[i] != 0.0 and s.velocity[i] <= s.noise(c) and has_come(s, c):
+                s.gap[i], more = 0.0, True
+
+
 def has_come(s: Mechanism, c: int) -> bool:
     """Whether a gap that is not exactly zero counts as closed: if rounding may be why, and if the order of impacts
     matters: beads that meet by threes are followed one after another, which is exact.
+
+    Of a contact that comes slowly it is not known when it does, by as long as it takes to cross its own rounding.
     """
     u, i = s.velocity[s.n_j + c], s.n_j + c
-    if not u < 0.0 or s.gap[s.n_j + c] > s.rounding_of_gap(c):
-        return s.gap[s.n_j + c] < 0.0
+    rounding = s.rounding_of_gap(c)
+    if not u < 0.0 or s.gap[i] > CROSSED * rounding:
+        return s.gap[i] < 0.0
     for d in range(s.n_c):
         k, u_d = s.n_j + d, s.velocity[s.n_j + d]
         r_c, r_d = s.model.restitution[c], s.model.restitution[d]
         strikes = s.mode[d] == OPEN and s.gap[s.n_j + d] == 0.0 and u_d < -s.noise(d)
-        if strikes and order_matters(
-            s.D[i * s.n_r + i], s.D[k * s.n_r + k], s.D[i * s.n_r + k], r_c, r_d, u, u_d
+        if (
+            strikes
+            and s.gap[i] <= max(rounding, s.rounding_of_gap(d) * u / u_d)
+            and order_matters(s.D[i * s.n_r + i], s.D[k * s.n_r + k], s.D[i * s.n_r + k], r_c, r_d, u, u_d)
         ):
             return True
     return False

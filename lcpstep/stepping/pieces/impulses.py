@@ -32,7 +32,7 @@ if not cython.compiled:
     )
     from lcpstep.stepping.pieces.corners import choose_jumping
     from lcpstep.stepping.pieces.jointed import answer_contact
-    from lcpstep.stepping.pieces.magnitudes import speed_terms
+    from lcpstep.stepping.pieces.magnitudes import LEAST, speed_terms
     from lcpstep.stepping.pieces.refine import NONE
     from lcpstep.stepping.pieces.sequences import (
         IN_A_ROW,
@@ -48,6 +48,7 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle, release, stick, turn
 
+CROSSED = 1000.0  # slacks: so far off contacts may be while another one crosses the rounding of its own gap
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
 
@@ -120,11 +121,9 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     """Contacts that fire now; their number.
 
     Those that close with one speed land together, those that touched before are pushed together, and so are those
-    of which rounding hides which came first, where that matters. Others whose gaps happen to be zero at the same time
-    are struck one after another, as they would be a little apart. Beside obstacles that move, gaps tell less than a
-    time does.
+    of which rounding hides which came first, where that matters, if by a third one. Others whose gaps happen to be
+    zero at the same time are struck one after another, as they would be a little apart.
     """
-    untold = rounding_of_time(w, t)
     for c in range(w.n_c):
         # A gap within the slack may still be open: its speed is not yet the one that it will close with
         closing = c == first or (
@@ -133,22 +132,35 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
         # Rounding must not add up over chattering: it strikes with the speed that it left with
         if w.fall[c] > 0.0 and w.rate[c] < 0.0 and closing:
             w.rate[c] = -w.fall[c]
+        w.before[c], w.p[c] = w.rate[c], 0.0  # looked at
     w.chosen[0] = first
-    u, n_s = w.rate[first], 1
+    if w.n_c == 1:
+        w.gap[first], w.grounded[first] = 0.0, GROUND
+        return 1
+    u, n_s, k = w.rate[first], 1, 0
     touched = w.grounded[first] >= GROUND and w.last[first] < 0.0
+    untold, crossing = rounding_of_time(w, t), rounding_of_gap(m, plan, w, first) / max(-u, LEAST)
     w.gap[first], w.grounded[first] = 0.0, GROUND
-    for c in range(w.n_c):
-        w.before[c] = w.rate[c]
-        missed = untold * abs(w.rate[c])
-        near = w.gap[c] <= plan.slack + missed
-        if c != first and w.status[c] == OPEN and w.rate[c] < 0.0 and (near or not m.flat):
-            pushed = touched and w.grounded[c] >= GROUND and w.last[c] < 0.0
-            alike = abs(w.rate[c] - u) <= SAME_SPEED * abs(u)
-            # the slack knows nothing of the lengths within a curved gap, whose rounding may be more
-            if (near and (pushed or alike)) or tied(m, plan, w, first, c, missed):
-                w.chosen[n_s] = c
-                w.gap[c], w.grounded[c] = 0.0, GROUND
-                n_s += 1
+    while k < n_s:
+        for c in range(w.n_c):
+            # Beside obstacles that move gaps tell less than a time does, and than that in which the first is crossed
+            missed = untold * abs(w.rate[c]) + min(crossing * abs(w.rate[c]), CROSSED * plan.slack)
+            near = w.gap[c] <= plan.slack + missed
+            if (
+                w.p[c] == 0.0
+                and c != first
+                and w.status[c] == OPEN
+                and w.rate[c] < 0.0
+                and (near or not m.flat)
+            ):
+                pushed = touched and w.grounded[c] >= GROUND and w.last[c] < 0.0
+                alike = abs(w.rate[c] - u) <= SAME_SPEED * abs(u)
+                # the slack knows nothing of the lengths within a curved gap, whose rounding may be more
+                if (near and (pushed or alike)) or tied(m, plan, w, w.chosen[k], c, missed):
+                    w.chosen[n_s], w.p[c] = c, 1.0
+                    w.gap[c], w.grounded[c] = 0.0, GROUND
+                    n_s += 1
+        k += 1
     return n_s
 
 
@@ -160,22 +172,32 @@ def rounding_of_time(w: Work, t: float) -> float:
     return 0.0
 
 
-def tied(m: Model, plan: Plan, w: Work, first: int, c: int, missed: float) -> bool:
-    """Whether contact c has come with the first one, up to rounding, and the order of their impacts matters.
+def tied(m: Model, plan: Plan, w: Work, d: int, c: int, missed: float) -> bool:
+    """Whether contact c has come with contact d, up to rounding, and the order of their impacts matters.
 
-    Contacts that have struck at this instant already are in the midst of a sequence, which has an order. Along closed
-    contacts, as into the apex of a wedge, both have come together as far as these have been kept on their surfaces.
+    Along closed contacts, as into the apex of a wedge, both have come together as far as these have been kept on
+    their surfaces. Contacts that have struck at this instant already are in the midst of a sequence, which has an
+    order, unless no time at all has passed since: from a corner, in which they all touch.
     """
-    if at_this_instant(plan, w, first) or at_this_instant(plan, w, c):
-        return False
-    rounding = missed + gap_rounding(m, w.G, w.q, c, plan.h * speed_terms(plan, w, c))
+    unknown = missed + rounding_of_gap(m, plan, w, c)
     if w.closed_now > 0:
-        rounding += ON_THE_SURFACE * plan.slack
-    if w.gap[c] > rounding:
+        unknown += ON_THE_SURFACE * plan.slack
+    if at_this_instant(plan, w, d) or at_this_instant(plan, w, c):
+        unknown = 0.0
+    if w.gap[c] > unknown:
         return False
     W, n, r = w.W, w.n_c, m.restitution
-    W_c, W_d, W_cd = W[first * n + first], W[c * n + c], W[first * n + c]
-    return order_matters(W_c, W_d, W_cd, r[first], r[c], w.rate[first], w.rate[c])
+    return order_matters(W[d * n + d], W[c * n + c], W[d * n + c], r[d], r[c], w.rate[d], w.rate[c])
+
+
+def rounding_of_gap(m: Model, plan: Plan, w: Work, c: int) -> float:
+    """Rounding of gap c: of its terms, of the way of a step, and of that so far as long as it counts as zero.
+
+    At the apex of a corner that is the origin the terms vanish, and what the way there has left of them does not.
+    """
+    speed = speed_terms(plan, w, c)
+    here = gap_rounding(m, w.G, w.q, c, plan.h * speed)
+    return max(here, min(plan.slack, gap_rounding(m, w.G, w.q, c, plan.h * w.steps * speed)))
 
 
 def jump(plan: Plan, w: Work, n_s: int) -> float:
