@@ -11,7 +11,7 @@ cdef void touch(Work w, Py_ssize_t c) noexcept nogil
 cdef Py_ssize_t answer(
     Model m, Plan plan, Work w, Record record, Py_ssize_t first, double t, bint drifted
 ) noexcept nogil
-@cython.locals(touched=bint, closing=bint, near=bint, pushed=bint, alike=bint)
+@cython.locals(touched=bint, closing=bint, near=bint, met=bint, pushed=bint, alike=bint)
 cdef Py_ssize_t choose_struck(Model m, Plan plan, Work w, Py_ssize_t first, double t) noexcept nogil
 cdef double rounding_of_time(Work w, double t) noexcept nogil
 cdef bint tied(Model m, Plan plan, Work w, Py_ssize_t d, Py_ssize_t c, double missed) noexcept nogil

@@ -144,19 +144,14 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     while k < n_s:
         for c in range(w.n_c):
             # Beside obstacles that move gaps tell less than a time does, and than that in which the first is crossed
-            missed = untold * abs(w.rate[c]) + min(crossing * abs(w.rate[c]), CROSSED * plan.slack)
-            near = w.gap[c] <= plan.slack + missed
-            if (
-                w.p[c] == 0.0
-                and c != first
-                and w.status[c] == OPEN
-                and w.rate[c] < 0.0
-                and (near or not m.flat)
-            ):
+            missed, passed = untold * abs(w.rate[c]), min(crossing * abs(w.rate[c]), CROSSED * plan.slack)
+            # the slack knows nothing of the lengths within a curved gap, whose rounding may be more
+            met = w.gap[c] <= plan.slack + missed + passed or not m.flat
+            if met and w.p[c] == 0.0 and c != first and w.status[c] == OPEN and w.rate[c] < 0.0:
+                near = w.gap[c] <= plan.slack + missed
                 pushed = touched and w.grounded[c] >= GROUND and w.last[c] < 0.0
                 alike = abs(w.rate[c] - u) <= SAME_SPEED * abs(u)
-                # the slack knows nothing of the lengths within a curved gap, whose rounding may be more
-                if (near and (pushed or alike)) or tied(m, plan, w, w.chosen[k], c, missed):
+                if (near and (pushed or alike)) or tied(m, plan, w, w.chosen[k], c, missed + passed):
                     w.chosen[n_s], w.p[c] = c, 1.0
                     w.gap[c], w.grounded[c] = 0.0, GROUND
                     n_s += 1
