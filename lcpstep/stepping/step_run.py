@@ -31,6 +31,7 @@ class StepRun(Run):
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, recorder: Recorder, most: int) -> None:
         super().__init__(method, scene, kept, recorder, most)
+        # Each (h, time at which it begins, number of its first step, of the step that ends it)
         self.stretches, self.stretch = divided(scene.t_span, method.h), 0
         self.t0, self.first, self.arrived = scene.t_span[0], 0, False
 

@@ -10,7 +10,7 @@ cdef bint joints_own(Mechanism s, Py_ssize_t c) noexcept nogil
 @cython.locals(solved=bint)
 cdef bint solve_members(Mechanism s) noexcept nogil
 @cython.locals(kept=bint)
-cdef void note(Mechanism s) noexcept nogil
+cdef void list_forces(Mechanism s) noexcept nogil
 @cython.locals(touches=bint)
 cdef bint stands(Mechanism s) noexcept nogil
 cdef bint enters(Mechanism s, Py_ssize_t c) noexcept nogil

@@ -58,7 +58,7 @@ def contact_forces(s: Mechanism) -> int:
         hold_modes(s)
         constrain(s, s.a, s.bias)
         balance(s, s.a)
-    note(s)
+    list_forces(s)
     return DONE if solved or presses(s) else NO_FORCES
 
 
@@ -88,7 +88,7 @@ def solve_members(s: Mechanism) -> bool:
     return solved
 
 
-def note(s: Mechanism) -> None:
+def list_forces(s: Mechanism) -> None:
     """Multipliers of the rows held, and the gap accelerations of all contacts.
 
     Closed contacts whose rows depend on those held are kept by these.

@@ -6,8 +6,8 @@ from lcpstep.stepping.theta_method.moving cimport Plan, Rows, State
 cdef Py_ssize_t EVENTS, IMPACT, NO_EVENT, RELEASE, STICK
 cdef double RESOLUTION, RESTING, UNTOLD
 
-cdef void glide(
-    Model m, Plan plan, State s, Rows c, Record record, double t0, Py_ssize_t first, Py_ssize_t last, bint free
+cdef void in_registers(
+    Model m, Plan plan, State s, Rows c, Record record, double t0, Py_ssize_t first, Py_ssize_t last, bint external
 ) noexcept nogil
 @cython.locals(driven=bint, moving=bint)
 cdef void coast(

@@ -24,19 +24,19 @@ if not cython.compiled:
 EVENTS = 2  # that a step may note
 
 
-def glide(
-    m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, first: int, last: int, free: bool
+def in_registers(
+    m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, first: int, last: int, external: bool
 ) -> None:
-    """Steps up to `last`, or to where the log is full; `free`: or to the first that has to do with the contact.
+    """Steps up to `last`, or to where the log is full; `external`: or to the first with a problem to solve.
 
-    A step that makes a number infinite is left to `theta_step`, which says so.
+    `theta_step` has that solved by what is no kernel, and says so where a step makes a number infinite.
     """
     before, s.next_force[0] = -1, s.force[0]  # which stays that unless it varies
     while before < s.steps < last and finite(s.g, 1) and finite(s.u, 1):
         before = s.steps
         if s.closed[0] == 0:
             coast(m, plan, s, record, t0, first, last)
-        if not free and plan.W[0] > 0.0:
+        if not external and plan.W[0] > 0.0:
             press(m, plan, s, c, record, t0, first, last)
 
 

@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy, finite, product
     from lcpstep.pointers import min
     from lcpstep.stepping.theta_method.moving import Plan, Rows, State
-    from lcpstep.stepping.theta_method.one_contact import glide
+    from lcpstep.stepping.theta_method.one_contact import in_registers
     from lcpstep.stepping.theta_method.theta_step import take_step
 
 
@@ -39,7 +39,7 @@ class Steps(Stepwise):
         self.single = single and rows.n == 1 and not rows.projected
 
     def begin(self, t: float, side: float) -> None:
-        """Forces and gaps of the initial state, which is kept where states are; side: see `start`."""
+        """Forces and gaps of the initial state, which is kept where states are; side: see `steps.start_side`."""
         look(self.m, self.s, self.rows, side)
         if self.record.n_times == 0:
             self.record.keep(t, 0.0, self.s.q, self.s.v, self.s.impulse)
@@ -62,7 +62,9 @@ class Steps(Stepwise):
             return BUFFER_FULL
         if self.single and not self.solved:
             end = self.record.untimed_until(self.plan.h, self.t0, self.first, self.last)
-            glide(self.m, self.plan, self.s, self.rows, self.record, self.t0, self.first, end, self.external)
+            in_registers(
+                self.m, self.plan, self.s, self.rows, self.record, self.t0, self.first, end, self.external
+            )
             if not (finite(self.s.g, 1) and finite(self.s.u, 1)):
                 return NOT_FINITE
             if self.s.steps >= self.last:
