@@ -22,8 +22,8 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import FOR_EVER, looks_back
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.together import order_matters
-    from lcpstep.pointers import abs, max
+    from lcpstep.kernels.together import TOGETHER, order_matters
+    from lcpstep.pointers import abs, max, min
 
 CROSSED = 1000.0  # roundings of a gap: so far off it may be while another one crosses its own
 ROUNDS = 100_000  # problems of impacts at one instant
@@ -132,7 +132,8 @@ def has_come(s: Mechanism, c: int) -> bool:
     """Whether a gap that is not exactly zero counts as closed: if rounding may be why, and if the order of impacts
     matters: beads that meet by threes are followed one after another, which is exact.
 
-    Of a contact that comes slowly it is not known when it does, by as long as it takes to cross its own rounding.
+    Of a contact that comes slowly it is not known when it does, by as long as it takes to cross its own rounding;
+    hops are known to digits of their own.
     """
     u, i = s.velocity[s.n_j + c], s.n_j + c
     rounding = s.rounding_of_gap(c)
@@ -142,9 +143,10 @@ def has_come(s: Mechanism, c: int) -> bool:
         k, u_d = s.n_j + d, s.velocity[s.n_j + d]
         r_c, r_d = s.model.restitution[c], s.model.restitution[d]
         strikes = s.mode[d] == OPEN and s.gap[s.n_j + d] == 0.0 and u_d < -s.noise(d)
+        crossing = min(s.rounding_of_gap(d) / -u_d, TOGETHER * (s.t0 - s.struck[d])) if strikes else 0.0
         if (
             strikes
-            and s.gap[i] <= max(rounding, s.rounding_of_gap(d) * u / u_d)
+            and s.gap[i] <= max(rounding, crossing * -u)
             and order_matters(s.D[i * s.n_r + i], s.D[k * s.n_r + k], s.D[i * s.n_r + k], r_c, r_d, u, u_d)
         ):
             return True

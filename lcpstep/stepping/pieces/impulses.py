@@ -140,6 +140,8 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     u, n_s, k = w.rate[first], 1, 0
     touched = w.grounded[first] >= GROUND and w.last[first] < 0.0
     untold, crossing = rounding_of_time(w, t), rounding_of_gap(m, plan, w, first) / max(-u, LEAST)
+    if w.last[first] >= 0.0:  # a hop is known to its own digits
+        crossing = min(crossing, ROUNDING * (w.sigma - w.last[first]))
     w.gap[first], w.grounded[first] = 0.0, GROUND
     while k < n_s:
         for c in range(w.n_c):
