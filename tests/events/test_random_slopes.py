@@ -17,3 +17,8 @@ def test_runs_end_in_one_place(first):
 @pytest.mark.parametrize("seed", [53, 431, 1811, 1892])
 def test_what_others_keep_hopping_comes_to_rest(seed):
     assert not complaints(seed)
+
+
+@pytest.mark.parametrize("seed", [3526, 15020, 17771])
+def test_a_blow_finds_closed_what_others_have_brought_to_rest_near_its_surface(seed):
+    assert not complaints(seed)
