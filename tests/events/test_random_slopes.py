@@ -22,3 +22,8 @@ def test_what_others_keep_hopping_comes_to_rest(seed):
 @pytest.mark.parametrize("seed", [3526, 15020, 17771])
 def test_a_blow_finds_closed_what_others_have_brought_to_rest_near_its_surface(seed):
     assert not complaints(seed)
+
+
+@pytest.mark.parametrize("seed", [9055, 11300])
+def test_sliding_that_has_died_away_keeps_no_blow_from_an_answer(seed):
+    assert not complaints(seed)
