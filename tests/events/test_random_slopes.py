@@ -27,3 +27,8 @@ def test_a_blow_finds_closed_what_others_have_brought_to_rest_near_its_surface(s
 @pytest.mark.parametrize("seed", [9055, 11300])
 def test_sliding_that_has_died_away_keeps_no_blow_from_an_answer(seed):
     assert not complaints(seed)
+
+
+def test_a_hop_that_begins_as_another_contact_stops_lands():
+    """Too low to be told by its gap; found late, it struck 30 times as fast, and kept a chattering going for ever."""
+    assert not complaints(15256)
