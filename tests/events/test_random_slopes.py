@@ -32,3 +32,8 @@ def test_sliding_that_has_died_away_keeps_no_blow_from_an_answer(seed):
 def test_a_hop_that_begins_as_another_contact_stops_lands():
     """Too low to be told by its gap; found late, it struck 30 times as fast, and kept a chattering going for ever."""
     assert not complaints(15256)
+
+
+@pytest.mark.parametrize("seed", [1475, 16219, 20167])
+def test_sliding_that_dies_away_with_hops_ends_where_steps_cannot_tell_it(seed):
+    assert not complaints(seed)
