@@ -36,6 +36,28 @@ def test_what_is_struck_stops_before_the_next_blow(method):
     np.testing.assert_allclose(run.v[-1], [0.0, 0.0, back * later, across - mu * impulse / M], atol=1e-8)
 
 
+@pytest.mark.parametrize("room", [0.02, 0.05, 0.1, 0.2])
+@pytest.mark.parametrize("method", METHODS, ids=str)
+def test_sliding_that_dies_away_with_hops_leaves_what_sticks(method, room):
+    """A block slides down a slope, towards a wall, against a small body between, which hops to and fro and falls.
+
+    Each blow turns its sliding, and all speeds shrink in proportion, to rest; there mu_s holds it, and mu would not.
+    """
+    normal, tangent = [0.4, 0.9165], [0.9165, -0.4]
+    rows = [[*normal, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [-1.0, 0.0, 1.0, 0.0]]
+    tangents = [[*tangent, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0], [0.0, -1.0, 0.0, 1.0]]
+    mu = np.array([0.19, 0.319, 0.14])
+    rubbing = Coulomb(mu, tangents, mu_s=1.3 * mu)
+    contacts = LinearContacts(rows, [0.0, 0.0, room], [0.067, 0.67, 0.58], friction=rubbing)
+    masses = np.array([5.375, 5.375, 0.436, 0.436])
+    system = LinearSystem(np.diag(masses), force=-9.81 * masses * [0.0, 1.0, 0.0, 1.0])
+    v0 = [0.7 * tangent[0], 0.7 * tangent[1], -1.7, 0.45]
+    run = simulate(Scene(system, np.zeros(4), v0, (0.0, 2.0), contacts), method)
+    assert run.status is Status.DONE, run.message
+    np.testing.assert_allclose(run.v[-1], 0.0, atol=1e-12)
+    np.testing.assert_allclose(run.q[-1], run.at(1.0)[0], rtol=0, atol=1e-12)
+
+
 @pytest.mark.parametrize("seed", [314, 869, 1063, 1323, 1770, 1817, 2924])
 @pytest.mark.parametrize("tolerance", [1e-12, 1e-11, 1e-9])
 def test_a_block_that_rocks_and_slides_comes_to_rest_on_its_feet(tolerance, seed):

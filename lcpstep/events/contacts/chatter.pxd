@@ -9,9 +9,13 @@ cdef bint close_small(Rubbing s, Record record, Tally tally, double t) noexcept 
 @cython.locals(some=bint)
 cdef bint stays_so(Rubbing s, double t) noexcept nogil
 cdef double later(Rubbing s, Py_ssize_t c, double t, double T) noexcept nogil
+@cython.locals(pull=double, most=double)
+cdef bint rests(Rubbing s, Py_ssize_t c) noexcept nogil
+@cython.locals(passed_on=bint, hops=bint)
+cdef bint hops_on(Rubbing s, Py_ssize_t c) noexcept nogil
 @cython.locals(passed_on=bint, slip=double, stops=bint)
 cdef bint stops_others(Rubbing s, Py_ssize_t c, double T) noexcept nogil
-@cython.locals(rough=bint)
+@cython.locals(rough=bint, at_rest=bint)
 cdef void close(Rubbing s, Py_ssize_t c) noexcept nogil
 cdef bint slides_on(Rubbing s, Py_ssize_t i, double slip) noexcept nogil
 cdef bint leaves_cone(Rubbing s, Py_ssize_t c) noexcept nogil

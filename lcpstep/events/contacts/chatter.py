@@ -11,6 +11,8 @@ import cython
 from lcpstep.events.codes import OPEN, SLIDES, STICKS
 
 if not cython.compiled:
+    from math import sqrt
+
     from lcpstep.events.contacts.equations import measure
     from lcpstep.events.contacts.held import know_rows
     from lcpstep.events.contacts.impact import find_free
@@ -26,6 +28,7 @@ if not cython.compiled:
         where_interrupted,
     )
     from lcpstep.events.rows.contacts import (
+        gap_of,
         gap_tolerance,
         hold_modes,
         measure_velocities,
@@ -35,6 +38,7 @@ if not cython.compiled:
         still,
         take_velocities,
     )
+    from lcpstep.events.rows.equations import size_of
     from lcpstep.events.rows.held import constrain
     from lcpstep.events.rows.keep import put_on_account
     from lcpstep.kernels.clock import NOISE
@@ -67,6 +71,30 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
             s.mode[c] = SLIDES
     find_free(s)
     return True
+
+
+def rests(s: Rubbing, c: int) -> bool:
+    """Whether forces would undo the sliding of contact c within a way that rounding hides, and nothing hops on.
+
+    Of sliding that dies away with hops this is what steps and times leave: with `mu` in the place of `mu_s` it would
+    go on. Beside others that hop on sliding passes through zero, and does not rest there.
+    """
+    i = s.n_j + s.n_c + c
+    if not rubs(s.rows, c) or s.mu_s[c] == s.mu[c] or hops_on(s, c):
+        return False
+    pull = abs(product(s.R, s.a, i, s.n_q) + s.bias[i])
+    most = sqrt(2.0 * pull * NOISE * size_of(s.rows, i, 0.0, s.q))
+    return abs(sliding(s.rows, c)) <= max(most, still(s.rows, i))
+
+
+def hops_on(s: Rubbing, c: int) -> bool:
+    """Whether a contact that impacts connect with contact c is left hopping, no higher than the tolerance."""
+    passed_on = passes_on(s.rows, c)
+    for d in range(s.n_c):
+        hops = s.mode[d] == OPEN and s.rows.left[d] < 0.0 and gap_of(s.rows, d) <= gap_tolerance(s.rows, d)
+        if d != c and hops and (passed_on or meets(s.rows, c, s.n_j + d)):
+            return True
+    return False
 
 
 def stops_others(s: Rubbing, c: int, T: float) -> bool:
@@ -119,11 +147,13 @@ def later(s: Rubbing, c: int, t: float, T: float) -> float:
 
 
 def close(s: Rubbing, c: int) -> None:
-    """Take the velocity of contact c, which slides on as before, unless that stops it."""
+    """Take the velocity of contact c, which slides on as before, unless it rests, or that stops it."""
     i = s.n_j + s.n_c + c
-    slip, rough = sliding(s.rows, c), rubs(s.rows, c)
+    slip, rough, at_rest = sliding(s.rows, c), rubs(s.rows, c), rests(s, c)
     s.loaded[c], s.direction[c] = 1, 1.0 if slip >= 0.0 else -1.0
-    s.mode[c] = s.rows.mode_closed(c)
+    s.mode[c] = STICKS
+    at_rest = at_rest and hold_modes(s.rows)
+    s.mode[c] = STICKS if at_rest else s.rows.mode_closed(c)
     if s.mode[c] == SLIDES and rough and not slides_on(s, i, slip):
         s.mode[c] = STICKS
     if not hold_modes(s.rows):  # sliding on would take the others' forces away: in a wedge all come to rest
@@ -132,7 +162,7 @@ def close(s: Rubbing, c: int) -> None:
         hold_modes(s.rows)
     copy(s.seen, s.v, s.n_q)
     take_velocities(s.rows)
-    if leaves_cone(s, c):
+    if not at_rest and leaves_cone(s, c):
         take_back(s, c)
     put_on_account(s.rows)
     measure_velocities(s.rows, s.v)

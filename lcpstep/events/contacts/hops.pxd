@@ -5,7 +5,7 @@ cdef Py_ssize_t OPEN
 cdef double NODE_0, NODE_1, NODE_2, NODE_3, OUTER, INNER, REMAINDER, LONGER, SHORT, LOW, FAINT, STEADY, UNLIKE
 cdef double NEVER
 
-@cython.locals(carried=bint, begins=bint)
+@cython.locals(carried=bint, low=bint, begins=bint)
 cdef void begin_hops(Rubbing s) noexcept nogil
 cdef void find_landings(Rubbing s, double h) noexcept nogil
 @cython.locals(low=bint)

@@ -51,13 +51,17 @@ STEADY = 1e-7  # of its terms: a gap velocity that changes by more at a corner d
 
 
 def begin_hops(s: Rubbing) -> None:
-    """Note the hops that begin at the base, just measured, whose accelerations are in `dy`; and those under way."""
+    """Note the hops that begin at the base, just measured, whose accelerations are in `dy`; and those under way.
+
+    What rises from where it cannot be told from its surface begins one, too: rounding would hide its landing.
+    """
     s.hopping = False
     for c in range(s.n_c):
         i = s.n_j + c
         carried = s.carried[c] == 1 and s.mode[c] == OPEN
         u = product(s.R, s.v, i, s.n_q) + s.rate[i]
-        begins = s.mode[c] == OPEN and s.touches[c] == 1 and u > s.terms[c]
+        low = s.touches[c] == 1 or s.gap[i] <= s.rows.rounding_of_gap(c)
+        begins = s.mode[c] == OPEN and low and u > s.terms[c]
         s.height[c] = s.height[c] if carried else 0.0
         s.rise[c], s.bend[c] = u, product(s.R, after(s.dy, s.n_q), i, s.n_q) + s.bias[i]
         s.hops[c], s.lands[c], s.carried[c] = 1 if carried or begins else 0, NONE, 1 if carried else 0

@@ -3,7 +3,7 @@ from lcpstep.events.contacts.state cimport Rubbing
 from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
-cdef Py_ssize_t ACCUMULATION, IMPACT, JAM, JUMP, NO_IMPULSES, NOT_FINITE, PAINLEVE_INCONSISTENT, OPEN, SLIDES, STICKS, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
+cdef Py_ssize_t ACCUMULATION, IMPACT, JAM, JUMP, LEANS, NO_IMPULSES, NOT_FINITE, PAINLEVE_INCONSISTENT, OPEN, SLIDES, STICKS, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
 
 cdef Py_ssize_t jump(Rubbing s, Record record, Tally tally, double t) noexcept nogil
 cdef bint strike(Rubbing s, Record record, Tally tally, double t, bint plastic) noexcept nogil

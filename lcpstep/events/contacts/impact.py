@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.codes import ACCUMULATION, IMPACT, JAM, JUMP, NO_IMPULSES, OPEN, SLIDES, STICKS
+from lcpstep.events.codes import ACCUMULATION, IMPACT, JAM, JUMP, LEANS, NO_IMPULSES, OPEN, SLIDES, STICKS
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
 
 if not cython.compiled:
@@ -87,7 +87,7 @@ def look_before(s: Rubbing) -> None:
     """The velocities before an impact."""
     for c in range(s.n_c):
         s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
-        if s.mode[c] == STICKS:
+        if s.n_t > 0:
             take_for_none(s, c)
         s.free[c] = 1
 
@@ -108,9 +108,13 @@ def can_rest(s: Rubbing) -> bool:
 
 
 def take_for_none(s: Rubbing, c: int) -> None:
-    """What contact c, which sticks, has of a sliding velocity is rounding, unless its obstacle has just jumped."""
+    """A sliding velocity of contact c that is rounding: of what sticks or leans all, but where its obstacle jumps.
+
+    Beside other velocities what is left of one that has died away, 1e-49, keeps solvers from an answer.
+    """
     i, T = s.n_c + c, s.n_j + s.n_c + c
-    if abs(s.velocity[T]) <= still(s.rows, T):
+    least = still(s.rows, T) if s.mode[c] == STICKS or s.mode[c] == LEANS else s.terms[i]
+    if abs(s.velocity[T]) <= least:
         s.terms[i] = max(s.terms[i], abs(s.velocity[T]))
         s.velocity[T] = 0.0
 

@@ -20,7 +20,7 @@ from lcpstep.events.codes import (
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import measure
+    from lcpstep.events.contacts.equations import measure, share_left
     from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
     from lcpstep.events.contacts.hops import carry, find_landings, interrupt, shortest_hop
     from lcpstep.events.contacts.impact import forget_terms
@@ -32,13 +32,13 @@ if not cython.compiled:
     from lcpstep.events.contacts.state import GUARDS, Rubbing
     from lcpstep.events.contacts.surfaces import find_coming, find_touching, lift
     from lcpstep.events.contacts.switching import reach_guard, watch
-    from lcpstep.events.rows.contacts import hold_modes, rubs, sliding, still
+    from lcpstep.events.rows.contacts import gap_tolerance, hold_modes, rubs, sliding, still
     from lcpstep.events.rows.jumps import breaks
     from lcpstep.events.rows.keep import keep
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
     from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import abs, min
+    from lcpstep.pointers import abs, max, min
 
 # Of a step: where the forces after a release, or a slip, are looked at, how much further while they are zero, and how
 # far at most
@@ -248,13 +248,16 @@ def stop(s: Rubbing, c: int) -> None:
 
 
 def land_with(s: Rubbing) -> None:
-    """Close the contacts that a stop has left with neither a gap nor a speed, along it or not, that can be told.
+    """Close the contacts that a stop has left with no gap above the tolerance, and no speed, along it or not.
 
     On its way down in a hop that rounding hides, one would fall on until the gap tells, and strike that much faster.
+    At rest, in a gap that hops left out have made, one would miss the next blow to what it is connected with.
     """
+    share = share_left(s)
     for d in range(s.n_c):
         i = s.n_j + d
-        lies = s.mode[d] == OPEN and s.gap[i] <= s.rows.rounding_of_gap(d)
+        least = max(s.rows.rounding_of_gap(d), share * gap_tolerance(s.rows, d))
+        lies = s.mode[d] == OPEN and s.gap[i] <= least
         if lies and abs(s.velocity[i]) <= s.terms[d] and abs(sliding(s.rows, d)) <= still(s.rows, i + s.n_c):
             s.mode[d] = SLIDES
 
