@@ -32,8 +32,7 @@ class Located:
         status TOO_MANY_EVENTS there
     max_per_step : bound on the events within one step; beyond it one plastic impact of all contacts ends the step,
         which loses energy that elastic contacts would keep; the run's message says how many steps that were. Not
-        with friction, where steps hold any number of events
-
+        with friction or joints, where steps hold any number of events
     tolerance : None for steps of h; else steps are h or shorter, and errors of positions and velocities are kept near
         tolerance * (1 + size of the motion) over the span, in the scene's units. A tolerance that cannot be met ends
         the run with the status STEP_TOO_SMALL
@@ -53,13 +52,11 @@ class Located:
     Smooth motion is of order two, with one force evaluation a step; so is the whole motion, through impacts,
     chattering, sticking and release. Contacts that fire together obey Moreau's law for simultaneous impacts, all
     others are struck one after another. Linear systems take the trapezoidal rule and are stable for every h, others
-    velocity Verlet, which needs h below 2 / (highest frequency). Scenes with joints (order 2, fixed steps) take
-    velocity Verlet too; every step ends on the joints. With order 4 or a tolerance they are stepped as those with
-    friction are.
+    velocity Verlet, which needs h below 2 / (highest frequency).
 
-    With planar friction (`Coulomb`) steps are velocity Verlet's or, of order 4, those of Runge-Kutta's classical
-    method, along the modes of the contacts, which may be beside joints (`lcpstep.stepping.rubbing`). Slips, sticks
-    and reversals have their own times, as impacts have. Sources: J. J. Moreau (1988), V. Acary and
+    With planar friction (`Coulomb`) or joints steps are velocity Verlet's or, of order 4, those of Runge-Kutta's
+    classical method, along the modes of the contacts (`lcpstep.stepping.rubbing`); every step ends on the joints.
+    Slips, sticks and reversals have their own times, as impacts have. Sources: J. J. Moreau (1988), V. Acary and
     B. Brogliato (2008) for the impact law; N. Newmark (1959) and H. Andersen (1983) for the motion between impacts
     and the joints.
     """
@@ -90,7 +87,7 @@ class Located:
         friction = scene.contacts is not None and scene.contacts.friction is not None
         if self.order == "exact":
             require_exact(scene)
-        elif friction or (scene.n_j > 0 and (self.order == 4 or self.tolerance is not None)):
+        elif friction or scene.n_j > 0:
             from lcpstep.stepping.rubbing.run import RubbingRun
 
             return RubbingRun(self, scene, kept).finish(progress)

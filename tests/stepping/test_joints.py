@@ -2,13 +2,14 @@
 
 import dataclasses
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from lagrangian import Joints, LinearContacts, LinearJoints, LinearSystem, Scene, System, scenes
-from lcpstep import Located, Moreau, simulate
+from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.errors import LcpStepError
 from tests.stepping.jointed import (
     G0,
@@ -164,7 +165,12 @@ def test_a_platform_on_three_parallel_rods_is_not_locked_by_the_third(projected)
     assert order(errors) == pytest.approx(2.0, abs=0.15)
 
 
-@pytest.mark.parametrize("method", [Moreau, Located])
+def event_driven(h):
+    """EventDriven, its states kept at steps of h."""
+    return EventDriven()
+
+
+@pytest.mark.parametrize("method", [Moreau, Located, partial(Located, order=4), event_driven])
 def test_redundant_joints_share_the_force_and_change_no_motion(method):
     # the same joint three times, once doubled, once reversed: each carries a third, in its own unit
     def pair(G):
@@ -174,13 +180,35 @@ def test_redundant_joints_share_the_force_and_change_no_motion(method):
         )  # fmt: skip
 
     h = 1e-2
-    one, three = (simulate(pair(G), method(h)) for G in ([[1, -1]], [[1, -1], [2, -2], [-1, 1]]))
+    one, three = (
+        simulate(pair(G), method(h), keep=np.linspace(0.0, 1.0, 101))
+        for G in ([[1, -1]], [[1, -1], [2, -2], [-1, 1]])
+    )
     np.testing.assert_allclose(three.q, one.q, rtol=0, atol=1e-15)
     np.testing.assert_allclose(one.q[-1], 1 / 6, rtol=1e-12)
     np.testing.assert_allclose(one.joint_impulse[1:, 0], -2 / 3 * h, rtol=1e-12)
     np.testing.assert_allclose(
         three.joint_impulse[1:], np.tile(np.array([-2, -1, 2]) / 9 * h, (100, 1)), rtol=1e-12
     )
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_three_parallel_rods_share_the_tension_alike_by_steps_and_from_event_to_event(order):
+    # as far as the platform hangs on each of them, whose shares turn with it, through a blow of its wall
+    scene = Scene(
+        system=LinearSystem(M=np.diag([1.0, 1.0, 0.2]), force=[0.0, -G0, 0.0]), p=[-1.0, 0.3, 1.0],
+        joints=Joints(3, platform, platform_jacobian), q0=[math.sin(1.0), -math.cos(1.0), 0.0], v0=np.zeros(3),
+        t_span=(0.0, 2.0), contacts=LinearContacts([[1.0, 0.0, 0.0]], offset=0.3, restitution=0.7), name="platform",
+    )  # fmt: skip
+    at = np.linspace(0.0, 2.0, 21)
+    exact = simulate(scene, EventDriven(1e-12, 1e-12), keep=at)
+    assert len(exact.impacts) > 1
+    assert np.all(np.abs(exact.joint_impulse.sum(axis=0)) > 1.0)
+    errors = []
+    for n in (100, 200, 400):
+        m = simulate(scene, Located(2.0 / n, order), keep=at)
+        errors.append(np.max(np.abs(np.cumsum(m.joint_impulse - exact.joint_impulse, axis=0))))
+    assert np.log2(errors[0] / errors[-1]) / 2.0 > order - 0.3
 
 
 def test_contradicting_joints_end_the_run_with_their_names():

@@ -188,9 +188,8 @@ def test_a_mass_rests_sticks_and_leaves_as_the_joint_lets_it():
     kinds = set(exact.impacts.kind)
     assert {Kind.IMPACT, Kind.STICK, Kind.RELEASE} <= kinds
     at = np.linspace(0.0, 4.0, 201)
-    levels = (200, 400, 800, 1600)
-    errors = errors_of(scene, levels, at, exact.at(at)[0], SPREAD[:3])
-    assert slope(levels, errors) >= 1.9
+    errors = errors_of(scene, (200, 400, 800, 1600), at, exact.at(at)[0], SPREAD[:3])
+    assert max(errors) < 1e-10  # under constant forces, on a joint whose place is known
 
 
 def heave(t, q, v, p, out):

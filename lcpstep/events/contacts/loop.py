@@ -38,7 +38,7 @@ if not cython.compiled:
     from lcpstep.events.contacts.state import Rubbing
     from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
     from lcpstep.events.contacts.switching import look_at_guards, switch
-    from lcpstep.events.rows.contacts import add_impulse, measure_velocities, still
+    from lcpstep.events.rows.contacts import count_impulses, measure_velocities, still
     from lcpstep.events.rows.jumps import drive_joints, go_beyond
     from lcpstep.events.rows.keep import keep, keep_event
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
@@ -152,8 +152,7 @@ def turn_corner(s: Rubbing) -> int:
         return NOT_FINITE
     forget_terms(s)
     if drive_joints(s.rows, s.v):
-        for m in range(s.rows.n_held):
-            add_impulse(s.rows, s.rows.row[m], s.rows.held[m])
+        count_impulses(s.rows, s.rows.held)
         measure_velocities(s.rows, s.v)
     for c in range(s.n_c):
         i = s.n_j + c

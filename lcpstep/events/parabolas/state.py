@@ -10,7 +10,7 @@ import numpy as np
 if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.events.rows.chatter import find_stop
-    from lcpstep.events.rows.contacts import Contacts, add_impulse, hold_modes
+    from lcpstep.events.rows.contacts import Contacts, add_impulse, count_impulses, hold_modes
     from lcpstep.events.rows.equations import size_of
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.model import Model
@@ -93,8 +93,7 @@ class Mechanism(Contacts):
     def stop(self) -> None:
         """Take their velocities from the closed contacts."""
         self.halt()
-        for m in range(self.n_held):
-            add_impulse(self, self.row[m], self.change[m])
+        count_impulses(self, self.change)
 
     def halt(self) -> None:
         """The same, by impulses on the rows held that lie in `change`, and are not counted."""

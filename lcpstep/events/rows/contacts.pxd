@@ -41,6 +41,7 @@ cdef void hold_leaning(Contacts s) noexcept nogil
 cdef void accelerate_on_joints(Contacts s) noexcept nogil
 cdef void accelerate_as_held(Contacts s) noexcept nogil
 cdef void list_multipliers(Contacts s) noexcept nogil
+cdef void list_by_row(Contacts s, double* x, double* out) noexcept nogil
 cdef void stop_rows(Contacts s) noexcept nogil
 cdef void take_velocities(Contacts s) noexcept nogil
 cdef void count_impulses(Contacts s, double* x) noexcept nogil

@@ -20,6 +20,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.rows.equations import least_effect, other, size_of
     from lcpstep.events.rows.held import constrain, hold, hold_joints, is_held
+    from lcpstep.events.rows.loads import share_out
     from lcpstep.events.rows.on_joints import can_bear
     from lcpstep.events.rows.state import Rows
     from lcpstep.kernels.clock import NOISE
@@ -267,14 +268,19 @@ def accelerate_as_held(s: Contacts) -> None:
 
 
 def list_multipliers(s: Contacts) -> None:
-    """Forces by row from those of the rows held: the friction of sliding contacts on their tangents."""
-    clear(s.multiplier, s.n_r)
+    """Forces by row from those of the rows held."""
+    list_by_row(s, s.held, s.multiplier)
+
+
+def list_by_row(s: Contacts, x: Doubles, out: Doubles) -> None:
+    """The same of any x: the friction of sliding contacts on their tangents, what joints say twice on all of them."""
+    clear(out, s.n_r)
     for m in range(s.n_held):
         i = s.row[m]
-        s.multiplier[i] = s.multiplier[i] + s.held[m]
-        share = s.share[i]
-        if share != 0.0:
-            s.multiplier[other(s, i)] = s.multiplier[other(s, i)] + share * s.held[m]
+        out[i] += x[m]
+        if s.share[i] != 0.0:
+            out[other(s, i)] += s.share[i] * x[m]
+    share_out(s, out)
 
 
 def stop_rows(s: Contacts) -> None:
@@ -290,9 +296,7 @@ def take_velocities(s: Contacts) -> None:
 
 
 def count_impulses(s: Contacts, x: Doubles) -> None:
-    """Count impulses of the rows held, with the friction of those that slide."""
-    for m in range(s.n_held):
-        i = s.row[m]
-        add_impulse(s, i, x[m])
-        if s.share[i] != 0.0:
-            add_impulse(s, other(s, i), s.share[i] * x[m])
+    """Count impulses of the rows held."""
+    list_by_row(s, x, s.near)
+    for i in range(s.n_r):
+        add_impulse(s, i, s.near[i])

@@ -1,4 +1,6 @@
-"""Forces of contacts that depend on each other, as kernels: shifted until those that carry one are independent.
+"""Forces of rows that depend on each other, as kernels.
+
+Of contacts they are shifted until those that carry one are independent:
 
     C_c = sum_m y_m C_m over the rows held,    lambda_m <- lambda_m + y_m x,    lambda_c <- lambda_c - x
 
@@ -12,10 +14,13 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.rows.equations import other
-    from lcpstep.events.rows.held import hold, hold_joints, solve_held
+    from math import sqrt
+
+    from lcpstep.events.rows.equations import couple, other, respond_to
+    from lcpstep.events.rows.held import hold, hold_joints, is_held, solve_held
     from lcpstep.events.rows.state import Rows
-    from lcpstep.pointers import Doubles, Indices
+    from lcpstep.kernels.vectors import add, clear, product
+    from lcpstep.pointers import Doubles, Indices, after
 
 
 def unload(s: Rows, force: Doubles, loaded: Indices, n_c: int) -> None:
@@ -53,3 +58,51 @@ def spread(s: Rows, c: int, force: Doubles) -> int:
         force[s.row[m] - s.n_j] += share * y[m]
     force[c] -= share
     return leaves
+
+
+def share_out(s: Rows, x: Doubles) -> None:
+    """Forces or impulses x of joints, by row, where some say the same: of least norm, which change no motion.
+
+    Each is measured in the unit in which its joint has unit mobility. What such joints can take from each other is
+    taken out of x, one left out after the other.
+    """
+    n, count = s.n_j, 0
+    for i in range(n if s.n_kept < n else 0):
+        z = after(s.idle, count * n)
+        if not is_held(s, i) and find_idle(s, i, z):
+            for m in range(count):
+                add(z, -product(s.idle, z, m, n), after(s.idle, m * n), n)
+            normalise(z, n)
+            count += 1
+    for m in range(count):
+        z, part = after(s.idle, m * n), 0.0
+        for k in range(n):
+            part += z[k] * x[k] * sqrt(s.D[k * s.n_r + k])
+        for k in range(n):
+            if z[k] != 0.0:
+                x[k] -= part * z[k] / sqrt(s.D[k * s.n_r + k])
+
+
+def find_idle(s: Rows, i: int, z: Doubles) -> bool:
+    """Forces of joint i, which is left out, and of those held that together do nothing; False: it never does."""
+    r, held, y = s.n_r, s.n_held, s.further
+    respond_to(s, i)
+    couple(s, i, i)
+    for m in range(s.n_kept):
+        couple(s, i, s.row[m])
+        y[m] = s.D[i * r + s.row[m]]
+    s.n_held = s.n_kept
+    solve_held(s, y)
+    s.n_held = held
+    clear(z, s.n_j)
+    z[i] = sqrt(s.D[i * r + i])
+    for m in range(s.n_kept):
+        z[s.row[m]] = -y[m] * sqrt(s.D[s.row[m] * r + s.row[m]])
+    return z[i] > 0.0
+
+
+def normalise(z: Doubles, n: int) -> None:
+    """z of length one."""
+    size = sqrt(product(z, z, 0, n))
+    for k in range(n):
+        z[k] /= size

@@ -5,12 +5,17 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from lcpstep.events.rows.equations import list_gaps
+    from lcpstep.events.rows.equations import least_effect, list_gaps
     from lcpstep.events.rows.held import measure_missing, push_by_change, renew_held
     from lcpstep.events.rows.state import Rows
     from lcpstep.kernels.acceleration import factor_mass
-    from lcpstep.kernels.vectors import largest
-    from lcpstep.pointers import Doubles
+    from lcpstep.kernels.dynamics import gaps
+    from lcpstep.kernels.vectors import add, clear, largest
+    from lcpstep.pointers import Doubles, abs, inf
+
+FEW, MOST = 2, 50  # of Newton's iterations
+HELPS = 0.25  # of a gap: what an iteration may leave of it without new rows
+CLOSED, TOLERANCES = 1e-3, 8.0  # of the tolerance: gaps that are none, and what others may leave
 
 
 def project(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
@@ -18,23 +23,62 @@ def project(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
 
     The impulses that take the velocities are left in `change`; False where rows have become dependent.
     """
-    for _ in range(2):
+    for _ in range(FEW):
         if not are_open(s, t, q, v) or not take_rows(s, t, q, v):
             break
         push_by_change(s, q)
     if not take_rows(s, t, q, v):
         return False
+    push_onto_rows(s, v)
+    return True
+
+
+def put_on_rows(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
+    """Put q onto the rows held, along the ways of those at hand while these help; False where no place is found.
+
+    By Newton's method; what has pushed is left in `held`.
+    """
+    before, anew = inf, False
+    clear(s.held, s.n_held)
+    for k in range(MOST):
+        if not are_open(s, t, q, v) or (k > 0 and none_open(s, q, CLOSED)):
+            return True
+        worst = largest(s.change, 0.0, s.n_held)
+        helps = worst < HELPS * before
+        if anew and not helps:
+            return none_open(s, q, TOLERANCES)
+        anew = not helps
+        if anew and not take_rows(s, t, q, v):
+            return False
+        push_by_change(s, q)
+        add(s.held, 1.0, s.change, s.n_held)
+        before = worst
+    return False
+
+
+def push_onto_rows(s: Rows, v: Doubles) -> None:
+    """Put v onto the rows held, which are those of its state, by impulses that are left in `change`."""
     measure_missing(s, v, s.rate)
     push_by_change(s, v)
-    return True
 
 
 def are_open(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
     """Whether gaps of rows held are not exactly zero; these, with their signs turned, into `change`."""
-    list_gaps(s, t, q, v)
+    if s.n_held > s.n_kept:
+        list_gaps(s, t, q, v)
+    else:
+        gaps(s.joints, t, q, v, s.near)
     for m in range(s.n_held):
         s.change[m] = -s.near[s.row[m]] if s.row[m] < s.n_j + s.n_c else 0.0  # tangents have none
     return largest(s.change, 0.0, s.n_held) > 0.0
+
+
+def none_open(s: Rows, q: Doubles, tolerances: float) -> bool:
+    """Whether the gaps just listed take no more than that of the tolerance from any coordinate."""
+    none = True
+    for m in range(s.n_held):
+        none = none and abs(s.change[m]) <= tolerances * least_effect(s, s.row[m], q)
+    return none
 
 
 def take_rows(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:

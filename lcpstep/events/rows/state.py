@@ -32,6 +32,7 @@ class Rows(Clock):
     share : (n_r,)            force of the `other` row of its contact that comes with that of a row held
     either : (n_r,)           whether a row may be held though its force alone would move it the other way
     L : (n_r, n_r)            factors of the matrix of the rows held;  doubt   relative error of a pivot, in roundings
+    idle : (n_j, n_j)         what joints that say the same can take from each other, see `loads`
     rests : (n_r,)            whether the velocity of a row is to be zero, held or not: of joints always
     R_on, MR_on, D_on, bias_on   R, MR, D and bias of what is left of the rows on the joints held, see `on_joints`
     on_joints                 whether these are known
@@ -66,7 +67,7 @@ class Rows(Clock):
         self.known = False
         self.rtol, self.atol = tolerances
         self.sudden, self.slack = Sudden(), 0.0
-        self.row_numbers = np.zeros(4 * n + n * n + 5 * r * n + 3 * r * r + 9 * r)
+        self.row_numbers = np.zeros(4 * n + n * n + 5 * r * n + 3 * r * r + 9 * r + n_j * n_j)
         self.a_free = doubles(self.row_numbers)
         self.force = after(self.a_free, n)
         self.work = after(self.force, n)
@@ -86,11 +87,13 @@ class Rows(Clock):
         self.doubt = after(self.share, r)
         self.L = after(self.doubt, r)
         self.bias_on, self.R_on, self.MR_on, self.D_on = self.bias, self.R, self.MR, self.D
+        self.idle = self.D
         if n_j > 0:
             self.bias_on = after(self.L, r * r)
             self.R_on = after(self.bias_on, r)
             self.MR_on = after(self.R_on, r * n)
             self.D_on = after(self.MR_on, r * n)
+            self.idle = after(self.D_on, r * r)
         self.row_list = np.zeros(3 * r, dtype=np.intp)
         self.row = indices(self.row_list)
         self.either = indices_after(self.row, r)

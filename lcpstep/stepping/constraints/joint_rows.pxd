@@ -30,7 +30,7 @@ cdef void sweep_out(
     Elimination e, double* H, double* X, Py_ssize_t n_q, Py_ssize_t* ids, Py_ssize_t n_a, Py_ssize_t n_j, double* R
 ) noexcept nogil
 cdef void leave(
-    Elimination e, double* row, double* J, double* share, double sign, Py_ssize_t n_q, double* out
+    Elimination e, double* row, double* J, double* share, Py_ssize_t n_q, double* out
 ) noexcept nogil
 cdef bint lost(Elimination e, double* H, Py_ssize_t n_q, Py_ssize_t i, Py_ssize_t k) noexcept nogil
 cdef void distribute(

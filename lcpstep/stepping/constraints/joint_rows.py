@@ -210,21 +210,19 @@ def sweep_out(
     """R of what joints leave of rows, P_k = H_k - sum Z_kj H_j, and of X so: R as a difference has no digits."""
     first = ids[n_a] * n_q  # of the joints' rows, which follow each other
     for k in range(n_a):
-        leave(e, after(H, ids[k] * n_q), after(H, first), after(e.Z, k * n_j), -1.0, n_q, after(e.P, k * n_q))
+        leave(e, after(H, ids[k] * n_q), after(H, first), after(e.Z, k * n_j), n_q, after(e.P, k * n_q))
     for k in range(n_a):
-        leave(e, after(X, ids[k] * n_q), after(X, first), after(e.Z, k * n_j), -1.0, n_q, e.way)
+        leave(e, after(X, ids[k] * n_q), after(X, first), after(e.Z, k * n_j), n_q, e.way)
         for i in range(n_a):
             R[i * n_a + k] = product(e.P, e.way, i, n_q)
 
 
-def leave(
-    e: Elimination, row: Doubles, J: Doubles, share: Doubles, sign: float, n_q: int, out: Doubles
-) -> None:
+def leave(e: Elimination, row: Doubles, J: Doubles, share: Doubles, n_q: int, out: Doubles) -> None:
     """What joints leave of a row, with that share of each of theirs; what is but rounding is nothing."""
     for q in range(n_q):
         out[q], e.size[q] = row[q], abs(row[q])
     for j in range(e.n_j):
-        part, of = sign * share[j], after(J, j * n_q)
+        part, of = -share[j], after(J, j * n_q)
         for q in range(n_q if part != 0.0 else 0):
             out[q] += part * of[q]
             e.size[q] += abs(part * of[q])

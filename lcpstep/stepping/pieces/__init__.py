@@ -9,7 +9,6 @@ event, impulses, chosen  an impact, the impulses of those that fire together, th
 contact_forces           of the contacts that rest; `switches` closes and opens them, `magnitudes` tells rounding
 sequences, settle        how chattering ends; events without end
 race, glide              impacts of many bodies in free flight; steps without events
-joints, jointed          what joints do to a state, and to a step
 carried                  coordinates of a moving frame
 codes, times             codes of the loop; times to rounding
 """

@@ -12,10 +12,9 @@ if not cython.compiled:
     from lcpstep.pointers import abs
     from lcpstep.stepping.pieces.codes import CLOSED, EPS, FINISHED, GROUND, NOT_FINITE
     from lcpstep.stepping.pieces.corners import find_corners
-    from lcpstep.stepping.pieces.joints import turn_onto_joints
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms
-    from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, refactor, respond
+    from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, respond
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import rounded_by, within
 
@@ -25,10 +24,6 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
     w.low, w.high = find_corners(plan, w, t)
     w.margin = plan.margin
     w.fresh = True
-    if w.joined:  # what rounding has put speeds as small off them by would let no impulse do
-        if not refactor(m, w, within(w, t)):
-            return NOT_FINITE
-        turn_onto_joints(w.joints, w.v)
     if plan.trapezoidal:
         external_force(m, within(w, t), w.q, w.v, w.force)
     elif not free_acceleration(m, w, within(w, t), w.q, w.v, w.free):

@@ -17,9 +17,8 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.pointers import Doubles, after, max
     from lcpstep.stepping.pieces.codes import INERTIA, ROUNDING
-    from lcpstep.stepping.pieces.jointed import UNTOLD
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
-    from lcpstep.stepping.pieces.refine import FORCES, NONE, solve_several, solve_unrefined
+    from lcpstep.stepping.pieces.refine import FORCES, NONE, solve_several
     from lcpstep.stepping.pieces.state import Plan, Work
 
 
@@ -38,31 +37,20 @@ def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, 
             return True
     if solve_together(m, plan, w, W, place, n, guess):
         return True
-    loosen(m, plan, w, W, n, guess == FORCES)
+    loosen(m, plan, w, n, guess == FORCES)
     return solve_together(m, plan, w, W, place, n, NONE)
 
 
-def loosen(m: Model, plan: Plan, w: Work, W: Doubles, n: int, forces: bool) -> None:
-    """Let the chosen contacts close by what rounding may make of b: accelerations, or speeds.
-
-    What joints hold altogether has no answer, and the speed that they leave it, nothing of which is its own, may be
-    the rounding of what they have taken: of forces over a step, or of a position over it.
-    """
+def loosen(m: Model, plan: Plan, w: Work, n: int, forces: bool) -> None:
+    """Let the chosen contacts close by what rounding may make of b: accelerations, or speeds."""
     for k in range(n):
         c = w.chosen[k]
-        terms = acceleration_terms(m, w, c)
-        if not forces:
-            terms = speed_terms(plan, w, c) + (plan.h * terms if plan.joined else 0.0)
-        w.b[k] += ROUNDING * terms
-        if plan.joined and W[c * w.n_c + c] == 0.0 and w.b[k] >= -UNTOLD * terms:
-            w.b[k] = max(w.b[k], 0.0)
+        w.b[k] += ROUNDING * (acceleration_terms(m, w, c) if forces else speed_terms(plan, w, c))
         w.z[k] = 0.0
 
 
 def solve_together(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:
     """`solve_chosen` of several contacts, by what W is made of."""
-    if plan.joined:
-        return solve_unrefined(w, W, n)
     if place != INERTIA:
         return solve_several(m, plan, w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n, guess)
     return solve_several(m, plan, w, W, w.M if m.mass.given else m.M_inverse, m.mass.given, n, guess)

@@ -8,8 +8,7 @@ from lcpstep.trajectory import Kind, Status
 
 # Why the loop returned: a status of the run,
 FINISHED, NOT_FINITE, LCP_FAILED = int(Status.DONE), int(Status.NOT_FINITE), int(Status.LCP_FAILED)
-TOO_MANY_EVENTS, JOINTS_FAILED = int(Status.TOO_MANY_EVENTS), int(Status.JOINTS_FAILED)
-PROJECTION_FAILED = int(Status.PROJECTION_FAILED)
+TOO_MANY_EVENTS = int(Status.TOO_MANY_EVENTS)
 # or to have the record emptied, at an event, and (within the loop alone) for another round of it, in which nothing is
 # known yet of the piece that begins
 STOPPED, AGAIN = -2, -3

@@ -15,11 +15,10 @@ if not cython.compiled:
     from lcpstep.kernels.linear import solve_factored
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import clear, copy
+    from lcpstep.kernels.vectors import clear, copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
-    from lcpstep.stepping.pieces.jointed import answer_contact, rate_left
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
     from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, keep_closed
     from lcpstep.stepping.pieces.smooth import answer_forces
@@ -211,7 +210,7 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
         if w.status[c] == CLOSED:
             w.chosen[n_k] = c
             w.z[n_k] = 0.5 * tau * w.force_now[c]
-            w.b[n_k] = rate_left(plan, w, c)
+            w.b[n_k] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
             n_k += 1
     if n_k == 0:
         return True
@@ -225,14 +224,12 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
         w.p[c] = p
         w.impulse[c] += p
         w.pushed[c] += p
-        if w.joined:
-            answer_contact(w, c, p, w.joints.piece)
         for i in range(w.n_q):
             w.v[i] += MG[c * w.n_q + i] * p
     for k in range(n_k):
         c = w.chosen[k]
         if w.p[c] == 0.0 and tau > 0.0:
-            u = rate_left(plan, w, c)
+            u = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
             if u > ROUNDING * speed_terms(plan, w, c):
                 lost = 2.0 * u / (tau * W[c * w.n_c + c])
                 force = w.force_now[c]

@@ -16,7 +16,7 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.together import gap_rounding, order_matters
     from lcpstep.kernels.vectors import clear, product
-    from lcpstep.pointers import Doubles, abs, after, max, min
+    from lcpstep.pointers import Doubles, abs, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
@@ -31,7 +31,6 @@ if not cython.compiled:
         ROUNDING,
     )
     from lcpstep.stepping.pieces.corners import choose_jumping
-    from lcpstep.stepping.pieces.jointed import answer_contact
     from lcpstep.stepping.pieces.magnitudes import LEAST, speed_terms
     from lcpstep.stepping.pieces.refine import NONE
     from lcpstep.stepping.pieces.sequences import (
@@ -206,8 +205,6 @@ def jump(plan: Plan, w: Work, n_s: int) -> float:
         c, p = w.chosen[k], w.z[k]
         if p > 0.0:
             largest = max(largest, p)
-            if w.joined:
-                answer_contact(w, c, p, after(w.impulse, w.n_c))
             for i in range(n):
                 w.v[i] += w.MG[c * w.n_q + i] * p
                 w.v_try[i] += abs(w.MG[c * w.n_q + i] * p)

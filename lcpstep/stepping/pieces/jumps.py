@@ -1,7 +1,7 @@
-"""Where the velocity of what contacts rest on, or of a joint, jumps at a time that no corner names, as kernels.
+"""Where the velocity of what contacts rest on jumps at a time that no corner names, as kernels.
 
-The accelerations of a piece of motion know nothing of it. Put back onto obstacles and joints at its end the motion
-would be dragged along, whatever the law of impact says. The time is found along the piece, as by the event-driven
+The accelerations of a piece of motion know nothing of it. Put back onto obstacles at its end the motion would
+be dragged along, whatever the law of impact says. The time is found along the piece, as by the event-driven
 method (`kernels.sudden`), and is a corner from then on, up to which the piece is made again.
 """
 
@@ -14,7 +14,7 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.sudden import coarseness
     from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import Doubles, abs, after, max, min
+    from lcpstep.pointers import abs, max, min
     from lcpstep.stepping.pieces.codes import CLOSED
     from lcpstep.stepping.pieces.corners import JUMP
     from lcpstep.stepping.pieces.loop import Steps
@@ -27,7 +27,7 @@ SIDES = 16.0  # of half of such a turn: how far from its middle nothing is left 
 
 def breaks(way: Steps, w: Work, t: float, length: float) -> bool:
     """Whether a velocity jumps within the piece at hand, which begins at t: the smooth interval ends there then."""
-    if w.closed_now == 0 and not way.told and way.n_rows == w.n_c:
+    if w.closed_now == 0 and not way.told:
         return False
     i = farthest_off(way, w, t, length)
     w.doubtful = not way.told
@@ -51,7 +51,7 @@ def breaks(way: Steps, w: Work, t: float, length: float) -> bool:
 
 def hidden_by_rounding(way: Steps, w: Work, t: float, i: int) -> float:
     """By how much rounding of places hides the time of the jump just found, if row i jumps by the place; else 0."""
-    if way.m.flat or i >= w.n_c:
+    if way.m.flat:
         return 0.0
     measure_rows(way, w, t, w.sudden.low)
     coarse = coarseness(w.q_try, w.v_try, w.n_q)
@@ -76,19 +76,18 @@ def place_of(m: Model, w: Work, t: float, coarse: float) -> float:
 
 
 def farthest_off(way: Steps, w: Work, t: float, length: float) -> int:
-    """The row whose velocity changes most within the piece, beyond errors and rounding, where none should; or -1.
+    """The contact whose velocity changes most within the piece, beyond errors and rounding, where none should; or -1.
 
-    Rows are the contacts, of which the closed ones count where not all are told, and joints that are driven.
+    Where not all are told the closed ones count, which have none where the piece begins.
     """
     found, most, largest = -1, 1.0, 0.0
-    moving = way.told or way.n_rows > w.n_c  # else what counts is closed, and has none where the piece begins
-    if moving:
+    if way.told:
         measure_rows(way, w, t, 0.0)
-    for i in range(way.n_rows):
-        w.begins[i] = velocity(w, i) if moving else 0.0
+    for i in range(w.n_c):
+        w.begins[i] = velocity(w, i) if way.told else 0.0
     measure_rows(way, w, t, length)
-    for i in range(way.n_rows):
-        if i >= w.n_c or w.status[i] == CLOSED or way.told:
+    for i in range(w.n_c):
+        if w.status[i] == CLOSED or way.told:
             change = abs(velocity(w, i) - w.begins[i])
             off = change / max(JUMP * size_of(way.plan, w, i), w.sudden.drift) if change > 0.0 else 0.0
             largest = max(largest, change)
@@ -100,33 +99,20 @@ def farthest_off(way: Steps, w: Work, t: float, length: float) -> int:
 
 
 def measure_rows(way: Steps, w: Work, t: float, tau: float) -> None:
-    """State, Jacobians and rates of contacts and joints at tau after the base t of the piece at hand."""
-    at = within(w, t + tau)
-    way.measure_at(at, tau)
-    if way.n_rows > w.n_c:
-        gap_rates(w.joints.rows, at, w.q_try, w.v_try, w.joints.J_try, w.joints.stretch)
-
-
-def row(w: Work, i: int) -> Doubles:
-    """Row i of the Jacobians."""
-    return after(w.G_try, i * w.n_q) if i < w.n_c else after(w.joints.J_try, (i - w.n_c) * w.n_q)
-
-
-def rate(w: Work, i: int) -> float:
-    """Its rate."""
-    return w.gap_t_try[i] if i < w.n_c else w.joints.stretch[i - w.n_c]
+    """State, Jacobian and rates of contacts at tau after the base t of the piece at hand."""
+    way.measure_at(within(w, t + tau), tau)
 
 
 def velocity(w: Work, i: int) -> float:
-    """Its velocity."""
-    return product(row(w, i), w.v_try, 0, w.n_q) + rate(w, i)
+    """The velocity of gap i."""
+    return product(w.G_try, w.v_try, i, w.n_q) + w.gap_t_try[i]
 
 
 def size_of(plan: Plan, w: Work, i: int) -> float:
-    """What its velocity is made of in a step, signs left aside."""
-    size = abs(rate(w, i))
+    """What it is made of in a step, signs left aside."""
+    size = abs(w.gap_t_try[i])
     for j in range(w.n_q):
-        size += abs(row(w, i)[j]) * (abs(w.v_try[j]) + plan.h * abs(w.free[j]))
+        size += abs(w.G_try[i * w.n_q + j]) * (abs(w.v_try[j]) + plan.h * abs(w.free[j]))
     return size
 
 

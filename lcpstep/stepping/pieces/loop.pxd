@@ -13,7 +13,7 @@ cdef class Steps(Stepwise):
     cdef bint gliding, ends, watched, asking, told
     cdef double tau
     cdef public double stop
-    cdef Py_ssize_t found, own, n_rows
+    cdef Py_ssize_t found, own
     cpdef Py_ssize_t begin(self, double t)
     cdef Py_ssize_t stage(self, Py_ssize_t goal) noexcept nogil
     @cython.locals(end=Py_ssize_t, code=Py_ssize_t)

@@ -46,9 +46,8 @@ class Steps(Stepwise):
     found    whose event ends it, or NOBODY,
     ends     and whether it ends with the smooth interval
     gliding  whether one linear degree of freedom goes on in registers while nothing happens
-    watched  whether obstacles or joints have a velocity of their own, which may jump (`jumps`), or rows by the place,
+    watched  whether obstacles have a velocity of their own, which may jump (`jumps`), or rows by the place,
     asking   and pieces are looked at for that whatever `next_forces` tells
-    n_rows   contacts, and joints that are driven
     told     whether open contacts have nothing but what jumps in the velocities of `measure_at` either
     stop     end of the span
     own      kept states that are in the coordinates of the scene
@@ -63,9 +62,7 @@ class Steps(Stepwise):
         self.m, self.plan, self.w, self.record = m, plan, w, record
         self.gliding = self.ends = False
         self.tau, self.found, self.stop, self.own = 0.0, NOBODY, inf, 0
-        driven = w.joined and obstacles_move(w.joints.rows)
-        self.watched = driven or obstacles_move(m) or not m.flat
-        self.n_rows = w.n_c + (w.n_j if driven else 0)
+        self.watched = obstacles_move(m) or not m.flat
         self.asking, self.told = self.watched, False
 
     def begin(self, t: float) -> int:
@@ -161,7 +158,7 @@ class Steps(Stepwise):
             if self.w.jump not in (self.w.low, self.w.high):
                 self.w.margin = self.plan.margin
             jumps = self.w.low == self.w.jump
-            if jumps or obstacles_move(self.m) or self.plan.joined:
+            if jumps or obstacles_move(self.m):
                 self.found = CORNER
             if jumps and not self.m.flat:
                 go_beyond(self.m, self.w, now)
@@ -227,10 +224,9 @@ def end_step(plan: Plan, w: Work, record: Record, t: float, stop: float) -> int:
     w.under_way = False
     if not is_finite(w):
         return NOT_FINITE
-    code = w.joints.failed if w.joined else FINISHED
-    if code == FINISHED and record.is_due(w.steps):
+    if record.is_due(w.steps):
         keep(w, record, t, 0.0)
-    return code
+    return FINISHED
 
 
 def begin_step(m: Model, plan: Plan, w: Work) -> None:

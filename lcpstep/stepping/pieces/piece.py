@@ -28,8 +28,6 @@ if not cython.compiled:
         SAME_TIME,
     )
     from lcpstep.stepping.pieces.contact_forces import hold, land
-    from lcpstep.stepping.pieces.jointed import load_joints, share_out, stay_at_base, turn_accelerations
-    from lcpstep.stepping.pieces.joints import put_on_joints
     from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
     from lcpstep.stepping.pieces.smooth import (
         ON_THE_SURFACE,
@@ -67,11 +65,8 @@ def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool
         gap_bias(m, w, within(w, t), w.q, w.v)
         for c in range(n_c):
             w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
-    if closed and not plan.constant:
-        if not renew_mobility(m, plan, w, t):
-            return False
-        if w.joined:
-            turn_accelerations(w, within(w, t))
+    if closed and not plan.constant and not renew_mobility(m, plan, w, t):
+        return False
     if not hold(m, plan, w, record, place, t):
         return False
     if plan.constant:
@@ -204,9 +199,6 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
 def look(m: Model, plan: Plan, w: Work, t: float, tau: float) -> None:
     """The gaps at tau after the base of the piece, which is at t, into w.gap_try."""
     look_along(w, tau)
-    if w.joined:
-        stay_at_base(w, t)
-        put_on_joints(w.joints, w.M, t + tau, w.q_try, w.v, plan.slack)
     gaps(m, t + tau, w.q_try, w.v, w.gap_try)
 
 
@@ -221,10 +213,7 @@ def between(m: Model, plan: Plan, w: Work, c: int, t: float, low: float, high: f
 
 def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to_end: bool) -> int:
     """Go on to w.sigma + tau; contacts that were closed all the way stay on the surface."""
-    now, first_row = t + w.sigma, record.row
-    if w.joined:
-        stay_at_base(w, now)
-        load_joints(w)
+    now = t + w.sigma
     end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
     wanted = record.awaited() < end
     if wanted and plan.plain:
@@ -258,8 +247,6 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
             measure(m, w, now + tau)
     if wanted and not plan.plain:
         keep_between(m, plan, w, record, now, tau, end)
-    if w.joined:
-        share_out(w, record, first_row, now, tau)
     return FINISHED
 
 

@@ -14,7 +14,6 @@ from lcpstep.kernels.model import Model
 from lcpstep.stepping.extent import extent, is_stiff
 from lcpstep.stepping.pieces.carried import displaced
 from lcpstep.stepping.pieces.codes import ROUNDING
-from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.steps import MARGIN, inverse
 from lcpstep.turns import turns
@@ -45,7 +44,7 @@ def at_rest(m: Model, trapezoidal: bool) -> Model:
 def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     """Constants of steps of size h."""
     n_q, n_c, G = m.n_q, m.n_c, m.arrays["G"]
-    trapezoidal = m.linear and scene.n_j == 0
+    trapezoidal = m.linear
     stiff = is_stiff(m)
     stops, most = turns(scene).stops, longest(scene, m, method)
     constant = trapezoidal and m.flat
@@ -62,7 +61,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     if math.isfinite(scene.period):  # a callback may know the time no better than its phase
         t_scale = max(t_scale, scene.period)
     return Plan({
-        "h": h, "made_for": h, "trapezoidal": trapezoidal, "joined": scene.n_j > 0, "stiff": trapezoidal and stiff,
+        "h": h, "made_for": h, "trapezoidal": trapezoidal, "stiff": trapezoidal and stiff,
         "steady": trapezoidal and not stiff and not varies(m),
         "plain": constant and not moves(m), "constant": constant, "small": n_q <= SMALL,
         "slack": ROUNDING * long, "per_step": method.max_per_step,
@@ -112,9 +111,9 @@ def largest_eigenvalue(A: Array) -> float:
     return float(np.max(np.abs(np.linalg.eigvals(A))))
 
 
-def start(scene: Scene, m: Model, p: Plan, joints: Joints | None) -> Work:
+def start(scene: Scene, m: Model, p: Plan) -> Work:
     """State at the start of the scene's span, with the work space of a step."""
-    w = Work(m.n_q, m.n_c, joints)
+    w = Work(m.n_q, m.n_c)
     w.start(scene.q0, scene.v0)
     if m.carried:
         c, c_t = displaced(m, scene.t_span[0])

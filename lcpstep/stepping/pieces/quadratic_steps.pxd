@@ -19,7 +19,6 @@ cdef class QuadraticSteps(Steps):
 cdef void measure_at(Model m, Work w, double at, double tau) noexcept nogil
 @cython.locals(found=Py_ssize_t, but=Py_ssize_t, searching=bint)
 cdef (Py_ssize_t, double) closing(Model m, Plan plan, Work w, double t, double rest) noexcept nogil
-cdef bint stays(Model m, Plan plan, Work w, Py_ssize_t c, double t, double rest) noexcept nogil
 @cython.locals(free=bint)
 cdef bint take_in_turn(Model m, Plan plan, Work w, Record record, double t) noexcept nogil
 cdef Py_ssize_t room(Plan plan, Work w, Record record) noexcept nogil

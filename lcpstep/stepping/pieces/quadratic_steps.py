@@ -16,12 +16,11 @@ if not cython.compiled:
     from lcpstep.pointers import abs, min
     from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
     from lcpstep.stepping.pieces.event import event
-    from lcpstep.stepping.pieces.jointed import left_of, stay_at_base, turn_with_joints
     from lcpstep.stepping.pieces.jumps import breaks
     from lcpstep.stepping.pieces.loop import Steps, is_finite
-    from lcpstep.stepping.pieces.piece import begin_piece, first_contact, look, move, polish
+    from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
     from lcpstep.stepping.pieces.race import race
-    from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE, look_along, mobility, renew_forces
+    from lcpstep.stepping.pieces.smooth import look_along, renew_forces
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle
     from lcpstep.stepping.pieces.times import at_corner, within
@@ -32,13 +31,11 @@ class QuadraticSteps(Steps):
 
     def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
         super().__init__(m, plan, w, record)
-        self.told, self.asking = m.flat, self.watched and (not m.flat or self.n_rows > w.n_c)
+        self.told, self.asking = m.flat, not m.flat
         self.gliding = plan.trapezoidal and m.flat and m.n_c <= 1 and m.n_q == 1
 
     def pass_corner(self, t: float) -> bool:
         """Forces on the far side of a corner."""
-        if self.w.joined:
-            turn_with_joints(self.w, within(self.w, t))
         return renew_forces(self.m, self.plan, self.w, t)
 
     def next_forces(self, t: float) -> None:
@@ -97,8 +94,6 @@ def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, 
     found, until, past, but, searching = NOBODY, rest, -1.0, NOBODY, True
     while searching:
         c, tau = first_contact(plan, w, until, t + w.end, past, but)
-        if c != NOBODY and w.joined and stays(m, plan, w, c, t + w.sigma, rest):
-            continue
         past, but, searching = tau, c, c != NOBODY and not plan.plain
         if searching:
             c, tau = polish(m, plan, w, c, t + w.sigma, tau, rest)
@@ -109,25 +104,6 @@ def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, 
     if found == NOBODY and until < rest:
         idle(w)
     return found, until
-
-
-def stays(m: Model, plan: Plan, w: Work, c: int, t: float, rest: float) -> bool:
-    """Whether an open contact, which seems to close, has a gap that joints which turn hold; it is steady then.
-
-    Its quadratic is of positions that are off the joints. Where these hold the normal at one place alone, the gap at
-    the end of the piece tells.
-    """
-    if w.joints.rows.flat:
-        return False
-    stay_at_base(w, t)
-    mobility(m, w, c)
-    if left_of(w, c) > 0.0:
-        return False
-    look(m, plan, w, t, rest)
-    if w.gap_try[c] < -ON_THE_SURFACE * plan.slack:
-        return False
-    w.rate[c] = w.half[c] = 0.0
-    return True
 
 
 def take_in_turn(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool:

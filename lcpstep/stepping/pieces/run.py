@@ -13,13 +13,12 @@ from lagrangian import Scene
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.looks import all_finite
-from lcpstep.model import joint_model, model
+from lcpstep.model import model
 from lcpstep.recording import SPARE, Kept, Recorder, States
 from lcpstep.stepping import adaptive
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.stepping.located_by_tolerance import Attempts
 from lcpstep.stepping.pieces.carried import displaced
-from lcpstep.stepping.pieces.joints import Joints
 from lcpstep.stepping.pieces.polynomial_steps import PolynomialSteps
 from lcpstep.stepping.pieces.prepare import MANY_EXACTLY, at_rest, plan, start
 from lcpstep.stepping.pieces.quadratic_steps import QuadraticSteps
@@ -40,13 +39,12 @@ class LocatedRun(StepRun):
     """One run: the loop with its state."""
 
     def __init__(self, method: Located, scene: Scene, kept: Kept) -> None:
-        self.model = at_rest(model(scene), method.order == 2 and scene.n_j == 0)
-        joints = Joints(self.model, joint_model(scene)) if scene.n_j > 0 else None
+        self.model = at_rest(model(scene), method.order == 2)
         p = plan(scene, self.model, method, method.h)
-        self.work = start(scene, self.model, p, joints)
+        self.work = start(scene, self.model, p)
         steps = kept.of_steps(number(scene.t_span, method.h)) if method.tolerance is None else None
         expected = None if steps is None else steps + steps // 16 + SPARE  # and events
-        recorder = Recorder(scene.n_q, scene.n_c + scene.n_j, kept, expected=expected)
+        recorder = Recorder(scene.n_q, scene.n_c, kept, expected=expected)
         super().__init__(method, scene, kept, recorder, PORTION)
         kind = QuadraticSteps if method.order == 2 else PolynomialSteps
         self.loop = kind(self.model, p, self.work, self.recorder.record)
@@ -192,11 +190,6 @@ class LocatedRun(StepRun):
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
-        if code == Status.JOINTS_FAILED:
-            return f"joint {self.work.joints.culprit} contradicts others {self.where}"
-        if code == Status.PROJECTION_FAILED:
-            joint = self.work.joints.culprit
-            return f"no position near satisfies joint {joint} {self.where}; try a smaller h"
         if code == Status.LCP_FAILED:
             n = self.work.members
             contacts = sorted(self.work.view("chosen")[:n].tolist())

@@ -21,8 +21,8 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import add, product
-    from lcpstep.pointers import abs, after, max, min
+    from lcpstep.kernels.vectors import product
+    from lcpstep.pointers import abs, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
@@ -35,7 +35,6 @@ if not cython.compiled:
         NOT_FINITE,
         ROUNDING,
     )
-    from lcpstep.stepping.pieces.jointed import answer_contact, turn_with_joints
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import speed_terms
     from lcpstep.stepping.pieces.refine import NONE
@@ -68,12 +67,8 @@ def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
         w.impulse[c] += p
         w.pushed[c] += p
         if p > 0.0:
-            if w.joined:
-                answer_contact(w, c, p, after(w.impulse, w.n_c))
             for i in range(n):
                 w.v[i] += w.MG[c * w.n_q + i] * p
-    if w.joined:
-        add(after(w.impulse, w.n_c), span, w.joints.free, w.n_j)
     for i in range(n):
         w.q[i] += span * w.v[i]
     w.sigma = w.end if span == rest else w.sigma + span
@@ -141,8 +136,6 @@ def begin_again(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
         if not refactor(m, w, t):
             return NOT_FINITE
         put_on_surface(m, plan, w, t)
-        if w.joined:
-            turn_with_joints(w, within(w, t))
         measure(m, w, t)
     while record.awaited() < t:
         left = t - record.awaited()

@@ -22,11 +22,6 @@ if not cython.compiled:
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
-    from lcpstep.stepping.pieces.jointed import meet_both, meet_joints, nearly_held, reach_joints
-    from lcpstep.stepping.pieces.joints import accelerate as join_acceleration
-    from lcpstep.stepping.pieces.joints import put_on_joints, turn_onto_joints
-    from lcpstep.stepping.pieces.joints import reduce as reduce_mobility
-    from lcpstep.stepping.pieces.joints import take as take_joints
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import within
 
@@ -100,8 +95,6 @@ def free_acceleration(m: Model, w: Work, t: float, q: Doubles, v: Doubles, out: 
     if not factor_mass(m, t, q, v, w.M):
         return False
     response(m, w.M, w.jolt, w.force, out)
-    if w.joined:
-        join_acceleration(w.joints, w.M, t, w.low, w.high, q, v, out)
     return True
 
 
@@ -120,27 +113,20 @@ def renew_forces(m: Model, plan: Plan, w: Work, t: float) -> bool:
 def mobility(m: Model, w: Work, c: int) -> None:
     """M^-1 G_c^T at the Jacobian w.G, into row c of w.MG; for a changing mass matrix by the factors in w.M."""
     response(m, w.M, w.jolt, after(w.G, c * w.n_q), after(w.MG, c * w.n_q))
-    if w.joined:
-        reduce_mobility(w.joints, w.M, c, after(w.G, c * w.n_q), after(w.MG, c * w.n_q))
 
 
 def respond(m: Model, w: Work) -> None:
-    """M^-1 G^T and the Delassus matrix at the Jacobian w.G, of what joints leave of it."""
+    """M^-1 G^T and the Delassus matrix at the Jacobian w.G."""
     for c in range(w.n_c):
         mobility(m, w, c)
-    G = w.joints.P if w.joined else w.G
     for c in range(w.n_c):
         for d in range(w.n_c):
-            w.W[d * w.n_c + c] = product(G, after(w.MG, c * w.n_q), d, w.n_q)
+            w.W[d * w.n_c + c] = product(w.G, after(w.MG, c * w.n_q), d, w.n_q)
 
 
 def refactor(m: Model, w: Work, t: float) -> bool:
-    """Factors of the mass matrix and of the joints at the state w.q."""
-    if not factor_mass(m, t, w.q, w.v, w.M):
-        return False
-    if w.joined:
-        take_joints(w.joints, w.M, t, w.q, w.v)
-    return True
+    """The factor of the mass matrix at the state w.q."""
+    return factor_mass(m, t, w.q, w.v, w.M)
 
 
 def gap_bias(m: Model, w: Work, t: float, q: Doubles, v: Doubles) -> None:
@@ -196,8 +182,6 @@ def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
     """
     near = ON_THE_SURFACE * plan.slack
     for landing in range(LANDINGS):
-        if w.joined:
-            put_on_joints(w.joints, w.M, t, w.q, w.v, plan.slack)
         gaps(m, t, w.q, w.v, w.gap_try)
         worst, closed = 0.0, landing == 0 and closed_off(w) > near
         for c in range(w.n_c):
@@ -209,12 +193,7 @@ def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
         if not plan.constant:
             gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
             respond(m, w)
-            if w.joined and nearly_held(w):  # at another place than the joints' rows
-                take_joints(w.joints, w.M, t, w.q, w.v)
-                respond(m, w)
         newton_step(w, w.q)
-    if w.joined:
-        meet_both(m, w, t, plan.slack)
 
 
 def closed_off(w: Work) -> float:
@@ -227,19 +206,13 @@ def closed_off(w: Work) -> float:
 
 
 def settle_state(m: Model, plan: Plan, w: Work, t: float, q: Doubles) -> None:
-    """Q, a position within a piece, onto closed contacts and joints and out of obstacles; V_TRY onto joints."""
-    free = plan.plain or w.n_c == 0 or (plan.exact and w.closed_now > 0)
-    if free and not plan.joined:
+    """Q, a position within a piece, onto closed contacts and out of obstacles."""
+    if plan.plain or w.n_c == 0 or (plan.exact and w.closed_now > 0):
         return
     copy(w.q_base, w.q, w.n_q)
     copy(w.q, q, w.n_q)
-    if w.joined:
-        put_on_joints(w.joints, w.M, t, w.q, w.v, plan.slack)
     if refactor(m, w, t):
         put_on_surface(m, plan, w, t)
-        if w.joined:
-            take_joints(w.joints, w.M, t, w.q, w.v_try)
-            turn_onto_joints(w.joints, w.v_try)
     copy(q, w.q, w.n_q)
     copy(w.q, w.q_base, w.n_q)
 
@@ -277,8 +250,6 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
     for c in range(w.n_c):
         w.impulse[c] += 0.5 * tau * w.force_now[c]
         w.pushed[c] += 0.5 * tau * w.force_now[c]
-    if w.joined:
-        reach_joints(w, t_next, tau, plan.slack)
     if w.closed_now > 0:
         if not refactor(m, w, t_next):
             return False
@@ -294,7 +265,5 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
         for i in range(n):
             w.v[i] += 0.5 * tau * (w.a_try[i] + w.a[i])
             w.free[i] = w.a_try[i]
-        if w.joined:
-            meet_joints(w, tau)
     measure(m, w, t_next)
     return True

@@ -3,7 +3,6 @@ from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.sudden cimport Sudden
 from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport Doubles, Indices
-from lcpstep.stepping.pieces.joints cimport Joints
 
 
 @cython.final
@@ -11,7 +10,7 @@ cdef class Plan:
     cdef readonly object fields
     cdef object kept
     cdef public double h, made_for
-    cdef readonly bint trapezoidal, joined, stiff, steady, plain, constant, small, exact
+    cdef readonly bint trapezoidal, stiff, steady, plain, constant, small, exact
     cdef readonly double slack, longest, period, margin
     cdef readonly Py_ssize_t per_step, many, n_corners
     cdef Doubles corners, A_inverse, AG, WA, A, unit
@@ -21,9 +20,7 @@ cdef class Plan:
 @cython.final
 cdef class Work:
     cdef readonly object numbers, marks, matrices, places
-    cdef readonly Py_ssize_t n_q, n_c, n_j
-    cdef readonly bint joined
-    cdef readonly Joints joints
+    cdef readonly Py_ssize_t n_q, n_c
     cdef Workspace lcp
     cdef Bracket bracket
     cdef Doubles q, v, free, a, force, next_force, q_base, q_try, v_try, a_try, jolt, q_from, v_from, a_from

@@ -34,8 +34,7 @@ class Plan:
 
     h
     made_for        length of pieces that the matrices in the place WHOLE are made for: h, but in parts of a step
-    trapezoidal     a linear system without joints, which moves by the trapezoidal rule
-    joined          there are joints
+    trapezoidal     a linear system, which moves by the trapezoidal rule
     stiff           C or K is not zero; this, the next three and `constant` are asked of trapezoidal systems alone
     steady          the acceleration without contact never changes
     plain           flat contacts at rest: gaps follow from their own quadratics
@@ -62,7 +61,7 @@ class Plan:
         n_q = fields["A_inverse"].shape[1]
         self.fields = fields
         self.h, self.made_for = fields["h"], fields["made_for"]
-        self.trapezoidal, self.joined, self.stiff = fields["trapezoidal"], fields["joined"], fields["stiff"]
+        self.trapezoidal, self.stiff = fields["trapezoidal"], fields["stiff"]
         self.steady, self.plain, self.constant = fields["steady"], fields["plain"], fields["constant"]
         self.small, self.exact = fields["small"], fields["exact"]
         self.slack, self.longest, self.margin = fields["slack"], fields["longest"], fields["margin"]
@@ -104,8 +103,8 @@ class Work:
     force_now       contact force
     older, older_time    the last positive contact force, and when
     pushed          impulse of forces since the step began, strikes aside, that a tolerance looks at
-    impulse         since the last kept state; those of the n_j joints follow
-    begins          velocity at the base of the piece at hand, where that may jump in it; those of the joints follow
+    impulse         since the last kept state
+    begins          velocity at the base of the piece at hand, where that may jump in it
     p               impulses of the event at hand, or forces of closed contacts, by contact; in
                     `sequences.choose_connected` 1 for contacts still to be looked at
     b, z            of the complementarity problem at hand, and its solution
@@ -131,10 +130,9 @@ class Work:
 
     Matrices, row by row:
     G, G_try, MG : (n_c, n_q)   gap Jacobian, one to try, (M^-1 G^T)^T
-    W : (n_c, n_c)              G M^-1 G^T, beside joints of what these leave: `smooth.respond`
+    W : (n_c, n_c)              G M^-1 G^T
     M : (n_q, n_q)              factor of a mass matrix that changes
     problem : (n_c, n_c);  pivots : (n_c + 1,);  lcp     work space of complementarity problems
-    joints          those of the scene, where `joined`
     bracket         in which a root is sought;  sudden   in which a jump is
 
     The loop's numbers:
@@ -171,13 +169,11 @@ class Work:
     Parameters
     ----------
     n_q, n_c : int   coordinates, contacts
-    joints : Joints or None
     """
 
-    def __init__(self, n_q: int, n_c: int, joints: Any) -> None:
-        n_j = 0 if joints is None else joints.n_j
-        self.n_q, self.n_c, self.n_j, self.joints, self.joined = n_q, n_c, n_j, joints, joints is not None
-        self.numbers = np.zeros(len(VECTORS) * n_q + (len(NUMBERS) + 2) * n_c + 2 * n_j)
+    def __init__(self, n_q: int, n_c: int) -> None:
+        self.n_q, self.n_c = n_q, n_c
+        self.numbers = np.zeros(len(VECTORS) * n_q + (len(NUMBERS) + 2) * n_c)
         self.marks = np.zeros(len(MARKS) * n_c, dtype=np.intp)
         self.matrices = np.zeros(3 * n_c * n_q + n_q * n_q + 2 * n_c * n_c)
         self.places = np.zeros(n_c + 1, dtype=np.intp)
@@ -210,7 +206,7 @@ class Work:
             return self.numbers[VECTORS.index(name) * self.n_q :][: self.n_q]
         n = len(VECTORS) * self.n_q
         if name == "impulse":
-            return self.numbers[n + len(NUMBERS) * self.n_c :][: self.n_c + self.n_j]
+            return self.numbers[n + len(NUMBERS) * self.n_c :][: self.n_c]
         return self.numbers[n + NUMBERS.index(name) * self.n_c :][: self.n_c]
 
     def place_vectors(self, x: Doubles) -> None:
@@ -244,7 +240,7 @@ class Work:
         self.turned, self.turns = after(x, 24 * n), after(x, 25 * n)
         self.hops, self.fall = after(x, 26 * n), after(x, 27 * n)
         self.pushed, self.end_u = after(x, 28 * n), after(x, 29 * n)
-        self.impulse, self.begins = after(x, 30 * n), after(x, 31 * n + self.n_j)
+        self.impulse, self.begins = after(x, 30 * n), after(x, 31 * n)
 
     def place_marks(self, x: Indices) -> None:
         """Whole numbers per contact, in the order of MARKS."""

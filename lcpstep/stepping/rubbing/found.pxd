@@ -8,7 +8,7 @@ cdef bint note_base(Strides s, double t) noexcept nogil
 cdef bint measure_base(Strides s, double t) noexcept nogil
 cdef void widen_bands(Strides s) noexcept nogil
 @cython.locals(size=double)
-cdef bint note(Strides s, double t, double* y, double* dy, double* value, double* slope) noexcept nogil
+cdef bint note(Strides s, double t, double* y, double* v, double* dy, double* value, double* slope) noexcept nogil
 @cython.locals(known=bint)
 cdef void note_bends(Strides s, double t, double* y, double* dy, double* bend) noexcept nogil
 cdef void know_biases(Strides s, double t, double* y) noexcept nogil

@@ -25,7 +25,7 @@ if not cython.compiled:
     from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.vectors import copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
-    from lcpstep.stepping.rubbing.strides import Strides
+    from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 NOWHERE = -1.0  # in place of a time: the guard does not act, its polynomial was wrong
 
@@ -44,8 +44,9 @@ def measure_base(s: Strides, t: float) -> bool:
     if not s.rates(t, s.y, s.K):
         return False
     s.evaluations += 1
+    s.based = True
     copy(s.leaving, s.multiplier, s.n_r)
-    return note(s, t, s.y, s.K, s.begin_value, s.begin_slope)
+    return note(s, t, s.y, s.v, s.K, s.begin_value, s.begin_slope)
 
 
 def widen_bands(s: Strides) -> None:
@@ -74,12 +75,15 @@ def widen_bands(s: Strides) -> None:
         s.armed[g] = 1 if s.begin_value[g] > s.band[g] else 0
 
 
-def note(s: Strides, t: float, y: Doubles, dy: Doubles, value: Doubles, slope: Doubles) -> bool:
-    """Guards at a state whose rates and forces are known, and slopes of gaps and sliding velocities."""
+def note(s: Strides, t: float, y: Doubles, v: Doubles, dy: Doubles, value: Doubles, slope: Doubles) -> bool:
+    """Guards at a state whose rates and forces are known, and slopes of gaps and sliding velocities.
+
+    v : the velocity on the rows held
+    """
     if not read_guards(s, t, y):
         return False
     copy(value, s.value, GUARDS * s.n_c)
-    v, a = after(y, s.n_q), after(dy, s.n_q)
+    a = after(dy, s.n_q)
     for c in range(s.n_c):
         i = s.n_j + c
         if s.mode[c] == OPEN:
@@ -120,8 +124,14 @@ def read_guards(s: Strides, t: float, y: Doubles) -> bool:
 
 
 def note_arrival(s: Strides, t: float, h: float) -> bool:
-    """Guards at the end of the step just made, and of the forces between with order four."""
-    if not note(s, t + h, s.y_new, s.arrival, s.end_value, s.end_slope):
+    """Guards at the end of the step just made, and of the forces between with order four.
+
+    What the velocity is off the rows held, by the error of the step, is no slope of a gap: another one that they hold
+    would seem to fall.
+    """
+    copy(s.dv, after(s.y_new, s.n_q), s.n_q)
+    push_end_back(s, s.dv)
+    if not note(s, t + h, s.y_new, s.dv, s.arrival, s.end_value, s.end_slope):
         return False
     note_bends(s, t + h, s.y_new, s.arrival, s.end_bend)
     note_middle(s, t, h, s.middle_value)

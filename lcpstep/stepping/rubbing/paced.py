@@ -31,7 +31,7 @@ if not cython.compiled:
         note_middle,
         read_guards,
     )
-    from lcpstep.stepping.rubbing.strides import Strides
+    from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 ROUNDING = 8 * RESOLUTION  # relative differences that are no errors
 SAFETY, LEAST, MOST = 0.9, 0.2, 2.0  # of the change of step
@@ -114,12 +114,15 @@ def halves(s: Strides, t: float, h: float) -> bool:
     copy(s.stored, s.y, n)
     copy(s.stored_rates, s.K, n)
     copy(s.stored_forces, s.leaving, s.n_r)
+    push_end_back(s, after(s.y_new, s.n_q))
     copy(s.y, s.y_new, n)
     copy(s.K, s.arrival, n)
+    copy(s.K, after(s.y, s.n_q), s.n_q)
     copy(s.leaving, s.arriving, s.n_r)
     good = s.step(t + half, half)
     if good:
         note_middle(s, t + half, half, s.late_value)
+        push_end_back(s, after(s.y_new, s.n_q))
     copy(s.refined, s.y_new, n)
     copy(s.y, s.stored, n)
     copy(s.K, s.stored_rates, n)
@@ -129,7 +132,7 @@ def halves(s: Strides, t: float, h: float) -> bool:
 
 def weigh(s: Strides, h: float) -> float:
     """The error of the step, relative to the motion; of what may have happened unseen in it, too."""
-    v, n = after(s.y_new, s.n_q), s.n_q
+    v, n = s.dv, s.n_q  # on the rows held
     wrong_q, wrong_v = distance(s.y_new, s.refined, n), distance(v, after(s.refined, n), n)
     for g in range(GUARDS * s.n_c):
         least, off = curve(s, g, h), strayed(s, g)

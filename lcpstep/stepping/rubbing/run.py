@@ -1,4 +1,4 @@
-"""A run of `Located` of a scene with friction, and of one with joints at order 4 or by a tolerance."""
+"""A run of `Located` of a scene with friction or joints."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from lcpstep.events.contacts.run import ContactRun, start
 from lcpstep.stepping.adaptive import FIRST
 from lcpstep.stepping.rubbing.steps import RubbingSteps
 from lcpstep.stepping.steps import divided
+from lcpstep.trajectory import Status
 
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
@@ -33,6 +34,13 @@ class RubbingRun(ContactRun):
         span = scene.t_span[1] - scene.t_span[0]
         system.next_step = FIRST * span if method.tolerance else h
         return system
+
+    def why(self, code: int) -> str:
+        """Why the run ended early, in words."""
+        if code == Status.PROJECTION_FAILED:
+            closed = f" and contacts {self.closed_ones}" if self.closed_ones else ""
+            return f"no position near satisfies the joints{closed} {self.where}; try a smaller h"
+        return super().why(code)
 
     @property
     def ahead(self) -> np.ndarray:

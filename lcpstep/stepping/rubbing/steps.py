@@ -5,13 +5,14 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
+    from lcpstep.events.contacts.held import know_rows
     from lcpstep.events.contacts.loose import straying
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
+    from lcpstep.kernels.vectors import copy
     from lcpstep.pointers import after
-    from lcpstep.stepping.rubbing.found import know_biases, read_guards
     from lcpstep.stepping.rubbing.stride import stride
-    from lcpstep.stepping.rubbing.strides import Strides
+    from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 
 class RubbingSteps(Strides):
@@ -22,9 +23,15 @@ class RubbingSteps(Strides):
         return stride(self, record, tally)
 
     def straying_at(self, place: float, h: float, level: float) -> int:
-        """The first contact that has a row leave its rest at that fraction of the step, which is made up to there."""
+        """The first contact that has a row leave its rest at that fraction of the step, which is made up to there.
+
+        Accelerations are those of the velocity on the rows held: beside it rows that depend on these seem to leave.
+        """
         t = self.clock.t0 + place * h
-        if not (self.step(self.clock.t0, place * h) and read_guards(self, t, self.y_new)):
+        if not self.step(self.clock.t0, place * h):
             return -1
-        know_biases(self, t, self.y_new)
-        return straying(self, after(self.arrival, self.n_q), level)
+        copy(self.seen, self.y_new, self.n)
+        push_end_back(self, after(self.seen, self.n_q))
+        if not know_rows(self, t, self.seen, self.dy):
+            return -1
+        return straying(self, after(self.dy, self.n_q), level)

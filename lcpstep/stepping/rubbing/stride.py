@@ -4,23 +4,27 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
+from lcpstep.events.codes import OPEN
+from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, PROJECTION_FAILED
 
 if not cython.compiled:
-    from lcpstep.events.contacts.equations import measure
+    from lcpstep.events.contacts.equations import measure, measure_gaps
     from lcpstep.events.contacts.loose import first_stray
     from lcpstep.events.contacts.modes import decide, undecided
     from lcpstep.events.contacts.moments import of_sliding
     from lcpstep.events.contacts.state import GUARDS
     from lcpstep.events.contacts.step import arrive, find_standing, mark_resting, of_force
-    from lcpstep.events.rows.contacts import add_impulse, count_impulses, hold_modes, still
+    from lcpstep.events.contacts.surfaces import FREE
+    from lcpstep.events.rows.contacts import add_impulse, hold_modes, list_by_row, still
+    from lcpstep.events.rows.equations import respond_to
+    from lcpstep.events.rows.held import constrain
     from lcpstep.events.rows.jumps import breaks
     from lcpstep.events.rows.keep import keep, keep_event
     from lcpstep.events.rows.projection import project
     from lcpstep.kernels.clock import NOISE
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy
+    from lcpstep.kernels.vectors import add, clear, copy, product
     from lcpstep.pointers import abs, after, max, min
     from lcpstep.stepping.rubbing.found import (
         NOWHERE,
@@ -33,11 +37,12 @@ if not cython.compiled:
         read_guards,
     )
     from lcpstep.stepping.rubbing.paced import pace
-    from lcpstep.stepping.rubbing.strides import Strides
+    from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 # Of a step: where the forces after a release, or a slip, are looked at, and how much further each time that nothing
 # is seen of it there
 LOOK_AHEAD, FURTHER = 1e-4, 10.0
+LANDINGS = 3  # of a state between, by Newton's method
 TORN = -2  # in place of a guard
 
 
@@ -133,6 +138,8 @@ def attempt(s: Strides, t: float, h: float) -> int:
 
 def failed(s: Strides) -> int:
     """Why there was no step."""
+    if s.astray:
+        return PROJECTION_FAILED
     return PAINLEVE_INCONSISTENT if s.rows.culprit >= 0 else NOT_FINITE
 
 
@@ -165,31 +172,31 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
 
 def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
     """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
-    put_back = tau > 0.0 and s.rows.n_held > 0 and put_end_back(s, t)
     if tau > 0.0:
+        if s.rows.n_held > 0:
+            put_end_back(s)
+            s.based = True
         pressed = keep_between(s, record, t, tau)
         press(s, pressed, 1.0)
         copy(s.y, s.y_new, s.n)
     s.clock.start_at(t)
-    if put_back:
-        count_impulses(s.rows, s.change)
     while record.wants(t, t >= s.clock.t_end):  # the end of the span
         keep(s.rows, record, record.awaited(), s.y)
         record.next_time += 1
 
 
-def put_end_back(s: Strides, t: float) -> bool:
-    """Put the end of the step onto the rows held, so that states between lead up to there; see `project`."""
-    copy(s.stored, s.y, s.n)
-    copy(s.y, s.y_new, s.n)
-    put_back = project(s.rows, t, s.q, s.v)
-    copy(s.y_new, s.y, s.n)
-    copy(s.y, s.stored, s.n)
-    return put_back
+def put_end_back(s: Strides) -> None:
+    """Put the velocity at the end of the step onto the rows held, so that states between lead up to there.
+
+    The position is there already: what is found of gaps is of the motion that goes on.
+    """
+    push_end_back(s, after(s.y_new, s.n_q))
+    list_by_row(s.rows, s.change, s.rows.near)
+    add(s.push, 1.0, s.rows.near, s.n_r)
 
 
 def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
-    """Keep the states asked for before the end t of the step, and its dense output.
+    """Keep the states asked for before the end t of the step, on the rows held, and its dense output.
 
     Returned: up to which fraction of the step impulses have been kept.
     """
@@ -203,11 +210,40 @@ def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
         if place > 0.0:
             press(s, pressed, place)
             s.at(place, s.seen)
+            if s.rows.n_held > 0:
+                put_between(s, record.awaited())
+                s.based = False
             pressed = place
         keep(s.rows, record, record.awaited(), s.seen)
         record.next_time += 1
     record.store(s.F, s.length)
     return pressed
+
+
+def put_between(s: Strides, t: float) -> None:
+    """Put the state `seen` onto the rows held, and out of obstacles: what has just been let go rises slowly."""
+    for _ in range(LANDINGS):
+        project(s.rows, t, s.seen, after(s.seen, s.n_q))
+        if not leaves_obstacles(s, t):
+            break
+
+
+def leaves_obstacles(s: Strides, t: float) -> bool:
+    """Put open contacts that are inside of their obstacles at `seen` onto these, rows held as they are; if any."""
+    some = False
+    measure_gaps(s, t, s.seen)
+    for c in range(s.n_c):
+        i = s.n_j + c
+        if s.mode[c] == OPEN and s.gap[i] < -s.band[GUARDS * c]:
+            respond_to(s.rows, i)
+            copy(s.dv, after(s.MR, i * s.n_q), s.n_q)
+            clear(s.shifted_rate, s.n_r)
+            constrain(s.rows, s.dv, s.shifted_rate)
+            way = product(s.R, s.dv, i, s.n_q)
+            if way > FREE * product(s.R, after(s.MR, i * s.n_q), i, s.n_q):
+                add(s.seen, -s.gap[i] / way, s.dv, s.n_q)
+                some = True
+    return some
 
 
 def press(s: Strides, a: float, b: float) -> None:

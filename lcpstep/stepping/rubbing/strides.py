@@ -3,11 +3,12 @@
     2   q' = q + h v + h^2 a / 2,  v' = v + h (a + a') / 2          velocity Verlet, a' taken at v + h a
     4   Runge-Kutta's classical method
 
-Each ends with the acceleration where it arrives, with which the next one begins. Impulses of contacts are integrated
-along with the motion, by the same weights. Between its ends a step is the cubic that has their values and slopes.
+Each ends with the acceleration where it arrives, on the rows held, with which the next one begins. Impulses of
+contacts are integrated along with the motion, by the same weights. Between its ends a step is the cubic that has
+their values and slopes.
 
-Sources: W. Swope et al., J. Chem. Phys. 76 (1982) 637; E. Hairer, S. Norsett, G. Wanner, Solving Ordinary
-Differential Equations I (Springer 1993), sections II.1 and II.6.
+Sources: W. Swope et al., J. Chem. Phys. 76 (1982) 637; H. Andersen, Rattle, J. Comput. Phys. 52 (1983); E. Hairer,
+S. Norsett, G. Wanner, Solving Ordinary Differential Equations I (Springer 1993), sections II.1 and II.6.
 """
 
 from __future__ import annotations
@@ -21,9 +22,13 @@ if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.events.contacts.smooth import Smooth
     from lcpstep.events.contacts.state import GUARDS
-    from lcpstep.kernels.vectors import add, clear, copy, finite
-    from lcpstep.pointers import after, min
+    from lcpstep.events.rows.contacts import list_by_row
+    from lcpstep.events.rows.projection import push_onto_rows, put_on_rows, take_rows
+    from lcpstep.kernels.clock import RESOLUTION
+    from lcpstep.kernels.vectors import add, clear, copy, distance, finite, largest
+    from lcpstep.pointers import Doubles, after, min
 
+ROUNDING = 64.0 * RESOLUTION  # of a position
 ARRIVAL = 4  # place of the rates at the end of a step, after those at its stages
 
 
@@ -35,6 +40,7 @@ class Strides(Smooth):
     tolerance, span      0 for steps of one size; of time
     size_q, size_v       of the motion so far, where there is a tolerance
     tau                  from the base to the event of `guard`
+    astray               the last step ends where no position is found on the rows held
     going                whether rates, forces, guards and their slopes at the base state are known
     leaving, arriving, middle : (n_r,)    forces of the rows at both ends of the step last made, and (order 4) between
     push : (n_r,)                         their impulses over it
@@ -43,6 +49,8 @@ class Strides(Smooth):
     arrival : (n,)       rates at the end of the step last made
     refined : (n,);  half_value, quarter_value, late_value : (3 n_c,)    where two steps of half the size lead, guards
                          between them, and those of the forces within each (order 4)
+    pull : (n_q,)        of the velocity, that with which the end of a step has been put back (order 2)
+    based                rows and masses at hand are those of the base state
     stored, stored_rates : (n,);  stored_forces : (n_r,)    the base state, its rates and forces meanwhile
 
     Parameters
@@ -55,11 +63,12 @@ class Strides(Smooth):
         super().__init__(*given[:-5])
         self.order, self.h, self.t_start, self.n_steps, self.tolerance = given[-5:]
         self.tau = 0.0
-        self.going, self.span = False, self.clock.t_end - self.t_start
+        self.going = self.astray = self.based = False
+        self.span = self.clock.t_end - self.t_start
         self.size_q = self.size_v = 0.0
         g = GUARDS * self.n_c
         self.arrival = after(self.K, ARRIVAL * self.n)
-        self.ends = np.zeros(5 * self.n_r + 8 * g + 2 * self.n_c + 3 * self.n)
+        self.ends = np.zeros(5 * self.n_r + 8 * g + 2 * self.n_c + 4 * self.n)
         self.leaving = doubles(self.ends)
         self.arriving = after(self.leaving, self.n_r)
         self.middle = after(self.leaving, 2 * self.n_r)
@@ -78,6 +87,7 @@ class Strides(Smooth):
         self.stored = after(self.refined, self.n)
         self.stored_rates = after(self.refined, 2 * self.n)
         self.stored_forces = after(self.refined, 3 * self.n)
+        self.pull = after(self.stored_forces, self.n_r)
 
     def step(self, t: float, h: float) -> bool:
         """A step of size h from y at t to y_new; False where it is not finite, or rows cannot be held."""
@@ -111,12 +121,21 @@ class Strides(Smooth):
 
 
 def verlet(s: Strides, t: float, h: float) -> bool:
-    """A step of order two."""
+    """A step of order two; what its rows held push the position back with acts on the velocity, too, as in RATTLE."""
     n, a = s.n_q, after(s.K, s.n_q)
     q_new, v_new = s.y_new, after(s.y_new, n)
     for i in range(n):
-        q_new[i] = s.y[i] + h * (s.y[n + i] + 0.5 * h * a[i])
+        q_new[i] = s.dv[i] = s.y[i] + h * (s.y[n + i] + 0.5 * h * a[i])
         v_new[i] = s.y[n + i] + h * a[i]
+    clear(s.push, s.n_r)
+    clear(s.pull, n)
+    if s.rows.n_held > 0:
+        if not s.based and not take_rows(s.rows, t, s.y, after(s.y, n)):
+            return False
+        s.based = False
+        if not stays_on_rows(s, t + h):
+            return False
+        pull_back(s, h)
     if not s.rates(t + h, s.y_new, s.arrival):
         return False
     for i in range(n):
@@ -124,15 +143,28 @@ def verlet(s: Strides, t: float, h: float) -> bool:
         s.arrival[i] = v_new[i]
     copy(s.arriving, s.multiplier, s.n_r)
     for i in range(s.n_r):
-        s.push[i] = 0.5 * h * (s.leaving[i] + s.arriving[i])
+        s.push[i] += 0.5 * h * (s.leaving[i] + s.arriving[i])
     s.evaluations += 1
     return finite(s.y_new, s.n)
+
+
+def pull_back(s: Strides, h: float) -> None:
+    """Velocities and impulses that belong to how the position has been put back, from `dv`.
+
+    But for what is only rounding of the position: over a step as short as that it would be any velocity.
+    """
+    if distance(s.y_new, s.dv, s.n_q) > ROUNDING * largest(s.y_new, 0.0, s.n_q):
+        for i in range(s.n_q):
+            s.pull[i] = (s.y_new[i] - s.dv[i]) / h
+        list_by_row(s.rows, s.rows.held, s.rows.near)
+        add(s.push, 1.0 / h, s.rows.near, s.n_r)
 
 
 def classical(s: Strides, t: float, h: float) -> bool:
     """A step of order four."""
     n, r = s.n, s.n_r
     clear(s.middle, r)
+    clear(s.pull, s.n_q)
     for i in range(r):
         s.push[i] = h / 6.0 * s.leaving[i]
     for stage in range(1, 4):
@@ -147,7 +179,19 @@ def classical(s: Strides, t: float, h: float) -> bool:
     for i in range(n):
         s.y_new[i] = s.y[i] + h / 6.0 * (s.K[i] + 2.0 * (s.K[n + i] + s.K[2 * n + i]) + s.K[3 * n + i])
     s.evaluations += 4
-    if not s.rates(t + h, s.y_new, s.arrival):
+    if not (stays_on_rows(s, t + h) and s.rates(t + h, s.y_new, s.arrival)):
         return False
     copy(s.arriving, s.multiplier, s.n_r)
     return finite(s.y_new, n)
+
+
+def push_end_back(s: Strides, v: Doubles) -> None:
+    """Put v, the velocity at the end of the step just made, onto the rows held."""
+    add(v, 1.0, s.pull, s.n_q)
+    push_onto_rows(s.rows, v)
+
+
+def stays_on_rows(s: Strides, t: float) -> bool:
+    """Put the position at the end of a step onto the rows held; False where none is found there (`astray`)."""
+    s.astray = s.rows.n_held > 0 and not put_on_rows(s.rows, t, s.y_new, after(s.y_new, s.n_q))
+    return not s.astray

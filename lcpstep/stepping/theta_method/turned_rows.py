@@ -54,7 +54,7 @@ def sweep_out_turned(e: Elimination, linear: bool, plan: Plan, s: State, c: Rows
             for j in range(n_j):
                 e.y[j] = plan.W[ids[k] * c.n + ids[n + j]]
             solve_joints(e, share)
-            leave(e, H, c.J, share, -1.0, n_q, P)
+            leave(e, H, c.J, share, n_q, P)
             forget_rounding(P, H, n_q)
     transpose(e)
     for k in range(n):
@@ -67,7 +67,7 @@ def sweep_out_turned(e: Elimination, linear: bool, plan: Plan, s: State, c: Rows
                 add(X, share[j], after(X_J, j * n_q), n_q)
             solve_joints(e, e.y)
             add(share, 1.0, e.y, n_j)
-        leave(e, X, X_J, share, -1.0, n_q, e.way)
+        leave(e, X, X_J, share, n_q, e.way)
         for i in range(n):
             R[i * n + k] = product(e.P, e.way, i, n_q)
     mobilities(c.H, plan.X, ids, n_k, plan.W, c.n, n_q)
@@ -104,7 +104,7 @@ def put_rows_on_joints(
             for j in range(n_j):
                 e.y[j] = product(c.G, after(plan.X, (first + j) * n_q), i, n_q)
             solve_joints(e, share)
-            leave(e, after(c.G, i * n_q), c.J_there, share, -1.0, n_q, P)
+            leave(e, after(c.G, i * n_q), c.J_there, share, n_q, P)
             forget_rounding(P, after(c.G, i * n_q), n_q)
             copy(H, P, n_q)
             left = c.G_t[i]
