@@ -29,7 +29,7 @@ if not cython.compiled:
 
 
 def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
-    """The impact of contact c at w.sigma, or that of a corner, and what it changes."""
+    """The impact of contact c at w.sigma of the step that began at t, or that of a corner, and what it changes."""
     now = t + w.sigma
     if c != CORNER and w.rate[c] >= -ROUNDING * speed_terms(plan, w, c):  # a touch: it does not strike
         w.gap[c], w.grounded[c] = 0.0, GROUND

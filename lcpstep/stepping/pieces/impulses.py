@@ -77,7 +77,10 @@ def touch(w: Work, c: int) -> None:
 
 
 def answer(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float, drifted: bool) -> int:
-    """`strike` once. Drifted: closed contacts may have speeds too, and none rebounds but at a corner."""
+    """One attempt at an impact, at time t. Drifted, the second one: what is closed has speeds too, and none rebounds.
+
+    At a corner closed contacts have speeds as well, and those that strike rebound.
+    """
     if first != CORNER and w.close_hits[first] >= MANY_AT_ONCE:
         measure_rates(w)
     n_s = choose_jumping(m, plan, w, t) if first == CORNER else choose_struck(m, plan, w, first, t)

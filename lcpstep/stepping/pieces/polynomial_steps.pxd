@@ -32,4 +32,4 @@ cdef double carried(
 ) noexcept nogil
 cdef void slide(Model m, Work w, double t) noexcept nogil
 @cython.locals(again=bint)
-cdef Py_ssize_t touch(Model m, Plan plan, Work w, Record record, double t, Py_ssize_t c) noexcept nogil
+cdef Py_ssize_t land(Model m, Plan plan, Work w, Record record, double t, Py_ssize_t c) noexcept nogil

@@ -125,7 +125,7 @@ class PolynomialSteps(Steps):
         if c != CORNER and self.opens:
             lose_force(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
             return FINISHED
-        return touch(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
+        return land(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
 
 
 def is_off(plan: Plan, w: Work, z: Polynomial) -> bool:
@@ -210,7 +210,7 @@ def slide(m: Model, w: Work, t: float) -> None:
     newton_step(w, w.v)
 
 
-def touch(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
+def land(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
     """Contact c lands at w.sigma: an impact, or a touch without one."""
     still = ROUNDING * speed_terms(plan, w, c) if c != CORNER else 0.0
     if c != CORNER and w.rate[c] >= -still:
@@ -228,7 +228,7 @@ def touch(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
     biases(m, w, t, w.q, w.v)
     if not renew_mobility(m, plan, w, t):
         return NOT_FINITE
-    for d in range(w.n_c):
+    for d in range(w.n_c):  # by which `closes` judges the next hop
         w.half[d] = 0.5 * (product(w.G, w.a, d, w.n_q) + w.bias[d])
     n_s = strike(m, plan, w, record, c, t)
     if n_s <= 0:

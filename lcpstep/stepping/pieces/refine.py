@@ -39,7 +39,7 @@ PULLS = 1e-10  # relative to the largest impulse: what an answer found without t
 
 
 def solve_unrefined(w: Work, W: Doubles, n: int) -> bool:
-    """The same from W alone."""
+    """The z of the chosen contacts by `solve_small`, from W alone; False where it finds none."""
     for i in range(n):
         for j in range(n):
             w.problem[i * n + j] = W[w.chosen[i] * w.n_c + w.chosen[j]]

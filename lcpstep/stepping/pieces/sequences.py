@@ -1,10 +1,10 @@
 """Sequences of impacts of `Located` at one instant, as kernels: their rounding, and where they end.
 
 A contact whose next hop would be shorter than a small fraction of the step is closed: under the acceleration of the
-piece, which is constant, the remaining impacts of a single contact end at T = 2 u+ / (|alpha| (1 - r)), and up to
-there they have the effect of a closed contact. Several contacts may strike each other to rest within no time at all,
-an inelastic collapse: these are closed together. Source: S. McNamara, W. Young, Inelastic collapse and clumping in a
-one-dimensional granular medium, Phys. Fluids A 4 (1992).
+piece (of order 2 constant, else that of its end) the remaining impacts of a single contact end at T = 2 u+ /
+(|alpha| (1 - r)), and up to there they have the effect of a closed contact. Several contacts may strike each other
+to rest within no time at all, an inelastic collapse: these are closed together. Source: S. McNamara, W. Young,
+Inelastic collapse and clumping in a one-dimensional granular medium, Phys. Fluids A 4 (1992).
 """
 
 from __future__ import annotations

@@ -37,7 +37,7 @@ class Plan:
     trapezoidal     a linear system, which moves by the trapezoidal rule
     stiff           C or K is not zero; this, the next three and `constant` are asked of trapezoidal systems alone
     steady          the acceleration without contact never changes
-    plain           flat contacts at rest: gaps follow from their own quadratics
+    plain           flat contacts at rest, of a linear system: gaps of order 2 follow from their own quadratics
     constant        M and the gap Jacobian are constant
     small           few coordinates: matrices for the rest of a step are made anew
     slack           gaps up to here count as zero
@@ -77,7 +77,7 @@ class Plan:
 class Work:
     """The piece of motion that began at the last event or step, and work space.
 
-    Over the piece q(tau) = q + v tau + a tau^2 / 2, and open gaps are g + u tau + half tau^2.
+    Over a piece of order 2 q(tau) = q + v tau + a tau^2 / 2, and open gaps are g + u tau + half tau^2.
 
     Vectors, a number per coordinate:
     q, v            state at the base of the piece
