@@ -69,5 +69,6 @@ def test_a_run_that_goes_on_by_roundings_of_time_alone_ends(monkeypatch):
     monkeypatch.setattr(Clock, "limit", 20.0)
     r = run(draw(2511250334, 4710), "located-4", 0.25)  # else it has hung
     assert r.status == "PROJECTION_FAILED"
+    assert "no position near satisfies joint 0 at t = " in r.text
     assert "try a smaller h" in r.text
     assert r.motion.counts.steps + r.motion.counts.events < 10_000

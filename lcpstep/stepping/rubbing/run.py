@@ -38,8 +38,10 @@ class RubbingRun(ContactRun):
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
         if code == Status.PROJECTION_FAILED:
-            closed = f" and contacts {self.closed_ones}" if self.closed_ones else ""
-            return f"no position near satisfies the joints{closed} {self.where}; try a smaller h"
+            i, n_j = self.system.astray, self.scene.n_j
+            what = f"joint {i}" if i < n_j else f"contact {(i - n_j) % self.scene.n_c}, which is closed,"
+            others = " and the others" if n_j + len(self.closed_ones) > 1 else ""
+            return f"no position near satisfies {what}{others} {self.where}; try a smaller h"
         return super().why(code)
 
     @property

@@ -138,7 +138,7 @@ def attempt(s: Strides, t: float, h: float) -> int:
 
 def failed(s: Strides) -> int:
     """Why there was no step."""
-    if s.astray:
+    if s.astray >= 0:
         return PROJECTION_FAILED
     return PAINLEVE_INCONSISTENT if s.rows.culprit >= 0 else NOT_FINITE
 

@@ -26,7 +26,7 @@ if not cython.compiled:
     from lcpstep.events.rows.projection import push_onto_rows, put_on_rows, take_rows
     from lcpstep.kernels.clock import RESOLUTION
     from lcpstep.kernels.vectors import add, clear, copy, distance, finite, largest
-    from lcpstep.pointers import Doubles, after, min
+    from lcpstep.pointers import Doubles, abs, after, min
 
 ROUNDING = 64.0 * RESOLUTION  # of a position
 ARRIVAL = 4  # place of the rates at the end of a step, after those at its stages
@@ -40,7 +40,7 @@ class Strides(Smooth):
     tolerance, span      0 for steps of one size; of time
     size_q, size_v       of the motion so far, where there is a tolerance
     tau                  from the base to the event of `guard`
-    astray               the last step ends where no position is found on the rows held
+    astray               of the rows held that no position is found on at the end of the last step the worst, or -1
     going                whether rates, forces, guards and their slopes at the base state are known
     leaving, arriving, middle : (n_r,)    forces of the rows at both ends of the step last made, and (order 4) between
     push : (n_r,)                         their impulses over it
@@ -63,7 +63,8 @@ class Strides(Smooth):
         super().__init__(*given[:-5])
         self.order, self.h, self.t_start, self.n_steps, self.tolerance = given[-5:]
         self.tau = 0.0
-        self.going = self.astray = self.based = False
+        self.going = self.based = False
+        self.astray = -1
         self.span = self.clock.t_end - self.t_start
         self.size_q = self.size_v = 0.0
         g = GUARDS * self.n_c
@@ -193,5 +194,15 @@ def push_end_back(s: Strides, v: Doubles) -> None:
 
 def stays_on_rows(s: Strides, t: float) -> bool:
     """Put the position at the end of a step onto the rows held; False where none is found there (`astray`)."""
-    s.astray = s.rows.n_held > 0 and not put_on_rows(s.rows, t, s.y_new, after(s.y_new, s.n_q))
-    return not s.astray
+    s.astray = -1
+    if s.rows.n_held > 0 and not put_on_rows(s.rows, t, s.y_new, after(s.y_new, s.n_q)):
+        s.astray = worst_row(s)
+    return s.astray < 0
+
+
+def worst_row(s: Strides) -> int:
+    """The row held whose gap is largest, as last measured."""
+    worst = 0
+    for m in range(1, s.rows.n_held):
+        worst = m if abs(s.rows.change[m]) > abs(s.rows.change[worst]) else worst
+    return s.rows.row[worst]
