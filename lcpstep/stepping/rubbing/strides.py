@@ -122,7 +122,7 @@ class Strides(Smooth):
 
 
 def verlet(s: Strides, t: float, h: float) -> bool:
-    """A step of order two; what its rows held push the position back with acts on the velocity, too, as in RATTLE."""
+    """A step of order two; of one size as RATTLE, whose push back onto the rows held acts on the velocity."""
     n, a = s.n_q, after(s.K, s.n_q)
     q_new, v_new = s.y_new, after(s.y_new, n)
     for i in range(n):
@@ -136,7 +136,8 @@ def verlet(s: Strides, t: float, h: float) -> bool:
         s.based = False
         if not stays_on_rows(s, t + h):
             return False
-        pull_back(s, h)
+        if s.tolerance == 0.0:  # by short steps, in which errors are sought, rounding would be any velocity
+            pull_back(s, h)
     if not s.rates(t + h, s.y_new, s.arrival):
         return False
     for i in range(n):
@@ -150,10 +151,7 @@ def verlet(s: Strides, t: float, h: float) -> bool:
 
 
 def pull_back(s: Strides, h: float) -> None:
-    """Velocities and impulses that belong to how the position has been put back, from `dv`.
-
-    But for what is only rounding of the position: over a step as short as that it would be any velocity.
-    """
+    """Velocities and impulses that belong to how the position has been put back, from `dv`, but for its rounding."""
     if distance(s.y_new, s.dv, s.n_q) > ROUNDING * largest(s.y_new, 0.0, s.n_q):
         for i in range(s.n_q):
             s.pull[i] = (s.y_new[i] - s.dv[i]) / h
