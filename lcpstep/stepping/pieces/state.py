@@ -34,7 +34,7 @@ class Plan:
 
     h
     made_for        length of pieces that the matrices in the place WHOLE are made for: h, but in parts of a step
-    trapezoidal     a linear system, which moves by the trapezoidal rule
+    trapezoidal     a linear system, which order 2 moves by the trapezoidal rule
     stiff           C or K is not zero; this, the next three and `constant` are asked of trapezoidal systems alone
     steady          the acceleration without contact never changes
     plain           flat contacts at rest, of a linear system: gaps of order 2 follow from their own quadratics
