@@ -11,6 +11,7 @@ import importlib.util
 import itertools
 import os
 import platform
+import shlex
 import shutil
 import sys
 import sysconfig
@@ -62,6 +63,12 @@ NO_COMPILER = (
 )
 
 
+def linking() -> list[str]:
+    """How this Python has modules linked, but for words to the linker that zig's does not know, as of Debian's."""
+    words = shlex.split(sysconfig.get_config_var("LDSHARED") or "cc -shared")[1:]
+    return [word for word in words if not word.startswith(("-Wl,-B", "-Wl,-O", "-Wl,-z"))]
+
+
 class Build(build_ext):
     """Compile, several files at a time, and say how far that is; what lies built beside its source is taken over."""
 
@@ -77,6 +84,7 @@ class Build(build_ext):
             if importlib.util.find_spec("ziglang") is None:
                 sys.exit(NO_COMPILER)
             os.environ["CC"] = f"{sys.executable} -m ziglang cc"
+            os.environ["LDSHARED"] = f"{os.environ['CC']} {' '.join(linking())}"
         for ext in self.extensions:
             ext.digest = digest(ext)
         translate([ext for ext in self.extensions if self.force or not is_built(ext)])
