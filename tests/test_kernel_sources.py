@@ -48,10 +48,29 @@ def test_a_division_of_integers_is_found():
 # --- what a kernel takes from others: said once, in the `.py` -----------------------------------------------------
 
 
-def test_what_a_kernel_imports_is_cimported_on_the_line_on_which_it_stood():
+def setup_module_of_project():
     spec = importlib.util.spec_from_file_location("setup_of_lcpstep", ROOT.parent / "setup.py")
     setup = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(setup)
+    return setup
+
+
+def test_the_linker_gets_no_words_of_debians_that_zigs_does_not_know(monkeypatch):
+    setup, debian = (
+        setup_module_of_project(),
+        "x86_64-linux-gnu-gcc -shared -Wl,-O1 -Wl,-Bsymbolic-functions -g",
+    )
+    for words, kept in (
+        (debian, ["-shared", "-g"]),
+        ("gcc -pthread -shared", ["-pthread", "-shared"]),
+        ("clang -bundle -undefined dynamic_lookup", ["-bundle", "-undefined", "dynamic_lookup"]),
+    ):
+        monkeypatch.setattr(setup.sysconfig, "get_config_var", lambda _, words=words: words)
+        assert setup.linking() == kept
+
+
+def test_what_a_kernel_imports_is_cimported_on_the_line_on_which_it_stood():
+    setup = setup_module_of_project()
     source = "import cython\n\nif not cython.compiled:\n    from math import pow as power\n\n"
     source += "    from lcpstep.pointers import (\n        abs,\n        max,\n    )\n\n"
     source += "if not cython.compiled:\n    ONE = [0.0]\n"
