@@ -13,9 +13,10 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import moves
     from lcpstep.kernels.model import Model
-    from lcpstep.pointers import Doubles, abs
+    from lcpstep.pointers import Doubles, abs, min
 
 TOGETHER = 64 * 2.0**-52  # of the terms of a gap, their signs left aside: smaller ones are zero to rounding
+CROSSED = 1000.0  # such roundings: so far off a contact may be while another one crosses that of its own gap
 SAME_OUTCOME, TURNS = 1e-10, 64  # of impacts in turn: relative difference of speeds; impacts of each contact
 
 
@@ -33,6 +34,14 @@ def gap_rounding(m: Model, G: Doubles, q: Doubles, c: int, path: float) -> float
     for j in range(m.n_q):
         size += abs(G[c * m.n_q + j] * q[j])
     return TOGETHER * size
+
+
+def moment_untold(rounding: float, u: float, since: float) -> float:
+    """For how long it is not known when a gap has closed that does so with u < 0, as long after its last impact.
+
+    A slow one crosses its rounding in long; in a hop it is known to digits of its own.
+    """
+    return min(rounding / -u, TOGETHER * since)
 
 
 def order_matters(

@@ -4,7 +4,6 @@ from lcpstep.kernels.record cimport Record
 from lcpstep.kernels.tally cimport Tally
 
 cdef Py_ssize_t IMPACT, JUMP, NO_FORCES, NO_IMPULSES, OPEN, SLIDES, BUFFER_FULL, DONE, TOO_MANY_EVENTS, ROUNDS
-cdef double CROSSED
 
 cdef Py_ssize_t jump(Mechanism s, Record record, Tally tally) noexcept nogil
 @cython.locals(rises=bint)
@@ -15,7 +14,7 @@ cdef void let_go(Mechanism s) noexcept nogil
 cdef void rejoin(Mechanism s) noexcept nogil
 @cython.locals(hit=bint)
 cdef bint approaches(Mechanism s) noexcept nogil
-@cython.locals(more=bint)
+@cython.locals(more=bint, comes=bint)
 cdef void find_come(Mechanism s) noexcept nogil
 @cython.locals(strikes=bint)
 cdef bint has_come(Mechanism s, Py_ssize_t c) noexcept nogil

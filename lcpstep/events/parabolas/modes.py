@@ -22,10 +22,9 @@ if not cython.compiled:
     from lcpstep.kernels.record import Record
     from lcpstep.kernels.recurrence import FOR_EVER, looks_back
     from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.together import TOGETHER, order_matters
-    from lcpstep.pointers import abs, max, min
+    from lcpstep.kernels.together import CROSSED, moment_untold, order_matters
+    from lcpstep.pointers import abs, max
 
-CROSSED = 1000.0  # roundings of a gap: so far off it may be while another one crosses its own
 ROUNDS = 100_000  # problems of impacts at one instant
 
 
@@ -124,32 +123,36 @@ def find_come(s: Mechanism) -> None:
         more = False
         for c in range(s.n_c):
             i = s.n_j + c
-            if s.mode[c] == OPEN and s.gap[i] != 0.0 and s.velocity[i] <= s.noise(c) and has_come(s, c):
+            comes = s.velocity[i] < 0.0 or s.gap[i] < 0.0
+            if (
+                s.mode[c] == OPEN
+                and s.gap[i] != 0.0
+                and comes
+                and s.velocity[i] <= s.noise(c)
+                and has_come(s, c)
+            ):
                 s.gap[i], more = 0.0, True
 
 
 def has_come(s: Mechanism, c: int) -> bool:
     """Whether a gap that is not exactly zero counts as closed: if rounding may be why, and if the order of impacts
     matters: beads that meet by threes are followed one after another, which is exact.
-
-    Of a contact that comes slowly it is not known when it does, by as long as it takes to cross its own rounding;
-    hops are known to digits of their own.
     """
     u, i = s.velocity[s.n_j + c], s.n_j + c
-    rounding = s.rounding_of_gap(c)
-    if not u < 0.0 or s.gap[i] > CROSSED * rounding:
+    if not u < 0.0:
         return s.gap[i] < 0.0
+    rounding = s.rounding_of_gap(c)
+    if s.gap[i] > CROSSED * rounding:
+        return False
     for d in range(s.n_c):
         k, u_d = s.n_j + d, s.velocity[s.n_j + d]
         r_c, r_d = s.model.restitution[c], s.model.restitution[d]
         strikes = s.mode[d] == OPEN and s.gap[s.n_j + d] == 0.0 and u_d < -s.noise(d)
-        crossing = min(s.rounding_of_gap(d) / -u_d, TOGETHER * (s.t0 - s.struck[d])) if strikes else 0.0
-        if (
-            strikes
-            and s.gap[i] <= max(rounding, crossing * -u)
-            and order_matters(s.D[i * s.n_r + i], s.D[k * s.n_r + k], s.D[i * s.n_r + k], r_c, r_d, u, u_d)
-        ):
-            return True
+        moment = moment_untold(s.rounding_of_gap(d), u_d, s.t0 - s.struck[d]) if strikes else 0.0
+        if strikes and s.gap[i] <= max(rounding, moment * -u):
+            W_c, W_d, W_cd = s.D[i * s.n_r + i], s.D[k * s.n_r + k], s.D[i * s.n_r + k]
+            if order_matters(W_c, W_d, W_cd, r_c, r_d, u, u_d):
+                return True
     return False
 
 

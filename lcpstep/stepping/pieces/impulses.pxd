@@ -3,7 +3,7 @@ from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
-cdef double CROSSED, SAME_SPEED, SMALL
+cdef double SAME_SPEED, SMALL
 
 cdef Py_ssize_t strike(Model m, Plan plan, Work w, Record record, Py_ssize_t first, double t) noexcept nogil
 cdef void touch(Work w, Py_ssize_t c) noexcept nogil

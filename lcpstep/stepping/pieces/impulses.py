@@ -14,9 +14,9 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.together import gap_rounding, order_matters
+    from lcpstep.kernels.together import CROSSED, TOGETHER, gap_rounding, moment_untold, order_matters
     from lcpstep.kernels.vectors import clear, product
-    from lcpstep.pointers import Doubles, abs, max, min
+    from lcpstep.pointers import Doubles, abs, inf, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
@@ -47,7 +47,6 @@ if not cython.compiled:
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.switches import idle, release, stick, turn
 
-CROSSED = 1000.0  # slacks: so far off contacts may be while another one crosses the rounding of its own gap
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
 
@@ -141,9 +140,9 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
         return 1
     u, n_s, k = w.rate[first], 1, 0
     touched = w.grounded[first] >= GROUND and w.last[first] < 0.0
-    untold, crossing = rounding_of_time(w, t), rounding_of_gap(m, plan, w, first) / max(-u, LEAST)
-    if w.last[first] >= 0.0:  # a hop is known to its own digits
-        crossing = min(crossing, ROUNDING * (w.sigma - w.last[first]))
+    since = w.sigma - w.last[first] if w.last[first] >= 0.0 else inf
+    untold = rounding_of_time(w, t)
+    crossing = moment_untold(rounding_of_gap(m, plan, w, first), min(u, -LEAST), since)
     w.gap[first], w.grounded[first] = 0.0, GROUND
     while k < n_s:
         for c in range(w.n_c):
@@ -194,9 +193,9 @@ def rounding_of_gap(m: Model, plan: Plan, w: Work, c: int) -> float:
 
     At the apex of a corner that is the origin the terms vanish, and what the way there has left of them does not.
     """
-    speed = speed_terms(plan, w, c)
-    here = gap_rounding(m, w.G, w.q, c, plan.h * speed)
-    return max(here, min(plan.slack, gap_rounding(m, w.G, w.q, c, plan.h * w.steps * speed)))
+    step = plan.h * speed_terms(plan, w, c)
+    here = gap_rounding(m, w.G, w.q, c, step)
+    return max(here, min(plan.slack, here + TOGETHER * (w.steps - 1) * step))
 
 
 def jump(plan: Plan, w: Work, n_s: int) -> float:

@@ -22,6 +22,7 @@ NUMBERS = [
     "gap", "rate", "half", "alpha", "bend", "bias", "gap_try", "gap_t", "gap_t_try", "end_s", "last",
     "force_now", "older", "older_time", "p", "b", "z", "residual", "change", "doubt", "before", "impulse_from",
     "since", "next_zero", "turned", "turns", "hops", "fall", "pushed", "end_u",
+    "impulse", "begins",
 ]  # fmt: skip
 MARKS = [
     "status", "grounded", "hits", "close_hits", "plastic", "chosen", "held", "place", "first_coordinate",
@@ -106,7 +107,8 @@ class Work:
     impulse         since the last kept state
     begins          velocity at the base of the piece at hand, where that may jump in it
     p               impulses of the event at hand, or forces of closed contacts, by contact; in
-                    `sequences.choose_connected` 1 for contacts still to be looked at
+                    `sequences.choose_connected` 1 for contacts still to be looked at, in `impulses.choose_struck` for
+                    those that are struck
     b, z            of the complementarity problem at hand, and its solution
     residual, change, doubt    what the solution leaves, its correction, and the relative error of factors
     before          gap velocity before the impact or corner at hand
@@ -173,7 +175,7 @@ class Work:
 
     def __init__(self, n_q: int, n_c: int) -> None:
         self.n_q, self.n_c = n_q, n_c
-        self.numbers = np.zeros(len(VECTORS) * n_q + (len(NUMBERS) + 2) * n_c)
+        self.numbers = np.zeros(len(VECTORS) * n_q + len(NUMBERS) * n_c)
         self.marks = np.zeros(len(MARKS) * n_c, dtype=np.intp)
         self.matrices = np.zeros(3 * n_c * n_q + n_q * n_q + 2 * n_c * n_c)
         self.places = np.zeros(n_c + 1, dtype=np.intp)
@@ -205,8 +207,6 @@ class Work:
         if name in VECTORS:
             return self.numbers[VECTORS.index(name) * self.n_q :][: self.n_q]
         n = len(VECTORS) * self.n_q
-        if name == "impulse":
-            return self.numbers[n + len(NUMBERS) * self.n_c :][: self.n_c]
         return self.numbers[n + NUMBERS.index(name) * self.n_c :][: self.n_c]
 
     def place_vectors(self, x: Doubles) -> None:
@@ -223,7 +223,7 @@ class Work:
         self.v_struck = after(x, 16 * n)
 
     def place_numbers(self, x: Doubles) -> None:
-        """Numbers per contact, from x on, in the order of NUMBERS, and impulses."""
+        """Numbers per contact, from x on, in the order of NUMBERS."""
         n = self.n_c
         self.gap, self.rate = x, after(x, n)
         self.half, self.alpha = after(x, 2 * n), after(x, 3 * n)
