@@ -12,9 +12,10 @@ import cython
 if not cython.compiled:
     from lcpstep.lcp.workspace import Workspace
     from lcpstep.pointers import Doubles, abs, after
-    from lcpstep.rows import dot, subtract
+    from lcpstep.rows import add_four, dot, subtract
 
 SINGULAR = 1e-14  # a pivot below this, next to entries of size one, is rounding
+TOGETHER, LARGE = 4, 40  # pivots taken off at a time of blocks of so many unknowns or more
 PREFERENCE = 0.1  # a diagonal pivot is taken if it has this part of the largest one
 
 
@@ -45,10 +46,14 @@ def factorise(F: Doubles, k: int, n: int, work: Workspace) -> int:
     """LU factors of the leading k x k block, rows and columns of which are listed in `order` and `active`.
 
     An index whose column depends on those before it is left out of the block and of `chosen`. Returns the
-    size that remains, or -1 if the row of such an index has been used already.
+    size that remains, or -1 if the row of such an index has been used already. Of a large block four pivots at a
+    time are taken off the rows below: until then a column is brought up to date when its turn comes.
     """
-    order, s = work.order, 0
+    order, s, done, together = work.order, 0, 0, TOGETHER if k >= LARGE else 1
     while s < k:
+        for p in range(s, k):
+            for q in range(done, s):
+                F[p * n + s] -= F[p * n + q] * F[q * n + s]
         row = largest_below(F, s, k, n)
         if not abs(F[row * n + s]) > SINGULAR:
             k = leave_out(F, s, k, n, work)
@@ -58,14 +63,30 @@ def factorise(F: Doubles, k: int, n: int, work: Workspace) -> int:
         if abs(F[s * n + s]) < PREFERENCE * abs(F[row * n + s]):
             swap_rows(F, s, row, k, n)
             order[s], order[row] = order[row], order[s]
+        for q in range(done, s):
+            subtract(after(F, s * n + s + 1), after(F, q * n + s + 1), F[s * n + q], k - s - 1)
         reciprocal = 1.0 / F[s * n + s]
         for p in range(s + 1, k):
-            factor = F[p * n + s] * reciprocal
-            F[p * n + s] = factor
-            if factor != 0.0:
-                subtract(after(F, p * n + s + 1), after(F, s * n + s + 1), factor, k - s - 1)
+            F[p * n + s] *= reciprocal
         s += 1
+        if s - done == together:
+            take_off(F, done, s, k, n, work.left)
+            done = s
     return k
+
+
+def take_off(F: Doubles, done: int, s: int, k: int, n: int, by: Doubles) -> None:
+    """Take the pivot rows from `done` on before s, one or four of them, off the rows below."""
+    pivots, m = after(F, done * n + s), k - s
+    for p in range(s, k):
+        some = False
+        for q in range(s - done):
+            by[q] = -F[p * n + done + q]
+            some = some or by[q] != 0.0
+        if some and s - done == 1:
+            subtract(after(F, p * n + s), pivots, -by[0], m)
+        elif some:
+            add_four(after(F, p * n + s), pivots, n, by, 1, m)
 
 
 def leave_out(F: Doubles, s: int, k: int, n: int, work: Workspace) -> int:

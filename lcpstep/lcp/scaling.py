@@ -17,6 +17,7 @@ if not cython.compiled:
 # A double x > 0 as an integer: the higher, the larger x; from bit 52 on 1022 plus the k with 2^-k x in [1/2, 1)
 INFINITE = 0x7FF0000000000000  # and beyond it what is not a number
 MANTISSA = 52
+TILE = 64  # rows that columns are filled from at a time: a line of W from memory serves all its entries
 LARGEST_POWER, SMALLEST_POWER = 1023 + 1000, 1023 - 1000
 
 
@@ -31,9 +32,12 @@ def equilibrate(W: Doubles, b: Doubles, n: int, work: Workspace) -> None:
     unit = inverse_power(largest)
     for i in range(n):
         scaled[i] *= unit
-    for j in range(n):
-        for i in range(n):
-            columns[j * n + i] = W[i * n + j] * r[i] * c[j]
+    last = 0
+    while last < n:
+        first, last = last, last + TILE if last + TILE < n else n
+        for j in range(n):
+            for i in range(first, last):
+                columns[j * n + i] = W[i * n + j] * r[i] * c[j]
     for i in range(n):
         r[i], c[i] = r[i] * unit, c[i] / unit
 

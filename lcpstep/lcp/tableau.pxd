@@ -8,11 +8,13 @@ cdef Py_ssize_t pivot_tableau(Py_ssize_t n, Py_ssize_t max_pivots, Workspace wor
 cdef Py_ssize_t last_lowest(double* q, Py_ssize_t n) noexcept nogil
 cdef void advance(Py_ssize_t p, Py_ssize_t s, Py_ssize_t n, Workspace work) noexcept nogil
 cdef void bring_up_to_date(Py_ssize_t s, Py_ssize_t until, Py_ssize_t n, Workspace work) noexcept nogil
+cdef void make_all(double* column, Py_ssize_t k, Py_ssize_t until, Py_ssize_t n, Workspace work) noexcept nogil
 cdef void make(double* column, Py_ssize_t k, Py_ssize_t n, Workspace work) noexcept nogil
 @cython.locals(some=bint)
 cdef void make_four(double* column, Py_ssize_t k, Py_ssize_t n, Workspace work) noexcept nogil
 cdef void change_all(Py_ssize_t n, Workspace work) noexcept nogil
 cdef void subtract_errors(double* q, double* w, Py_ssize_t n, Workspace work) noexcept nogil
+cdef void list_by_changes(Py_ssize_t n, Workspace work) noexcept nogil
 cdef Py_ssize_t list_ties(Py_ssize_t s, Py_ssize_t n, Workspace work) noexcept nogil
 cdef Py_ssize_t first_of_ties(
     Py_ssize_t tied, Py_ssize_t s, Py_ssize_t n, Workspace work

@@ -86,14 +86,19 @@ def advance(p: int, s: int, n: int, work: Workspace) -> None:
 
 def bring_up_to_date(s: int, until: int, n: int, work: Workspace) -> None:
     """Make the changes before `until` in column s that have not been made there."""
-    column, k = after(work.columns, s * n), work.made[s]
+    if work.made[s] < until:
+        make_all(after(work.columns, s * n), work.made[s], until, n, work)
+        work.made[s] = until
+
+
+def make_all(column: Doubles, k: int, until: int, n: int, work: Workspace) -> None:
+    """Make the changes from k on before `until` in a column."""
     while k + 4 <= until:
         make_four(column, k, n, work)
         k += 4
     while k < until:
         make(column, k, n, work)
         k += 1
-    work.made[s] = k
 
 
 def make(column: Doubles, k: int, n: int, work: Workspace) -> None:
@@ -217,17 +222,30 @@ def subtract_errors(q: Doubles, w: Doubles, n: int, work: Workspace) -> None:
 
     Of columns that are not up to date the sum is, change by change, as far as each of them is.
     """
-    total = work.x
+    total, first, next_one, done = work.x, work.z_place, work.w_place, 0
     for i in range(n):
         total[i] = 0.0
+    list_by_changes(n, work)
     for k in range(work.waiting + 1):
-        for c in range(n + 1):
+        c = first[k]
+        if c != NOTHING or k == work.waiting:
+            make_all(total, done, k, n, work)
+            done = k
+        while c != NOTHING:
             i = work.nonbasic[c] - n - 1
-            if work.made[c] == k and i >= 0:
-                subtract(total, after(work.columns, c * n), -w[i] * work.row_scale[i], n)
-        if k < work.waiting:
-            make(total, k, n, work)
+            subtract(total, after(work.columns, c * n), -w[i] * work.row_scale[i], n)
+            c = next_one[c]
     subtract(q, total, 1.0, n)
+
+
+def list_by_changes(n: int, work: Workspace) -> None:
+    """Chain columns of nonbasic w that have as many changes made in them: `z_place` begins, `w_place` goes on."""
+    for k in range(work.waiting + 1):
+        work.z_place[k] = NOTHING
+    for c in range(n, -1, -1):
+        if work.nonbasic[c] > n:
+            work.w_place[c] = work.z_place[work.made[c]]
+            work.z_place[work.made[c]] = c
 
 
 def read_off(q: Doubles, least: float, z: Doubles, n: int, work: Workspace) -> None:

@@ -52,7 +52,7 @@ class Workspace:
     """
 
     def __init__(self, n: int) -> None:
-        self.numbers = np.zeros((n + 1) * n + 2 * n * n + VECTORS * (n + 1))
+        self.numbers = np.empty((n + 1) * n + 2 * n * n + VECTORS * (n + 1))
         self.lists = np.zeros(LISTS * (2 * n + 1), dtype=np.intp)
         self.residual = self.best_residual = self.smallest = 0.0
         self.ray_dz_0 = self.ray_z_0 = 0.0
