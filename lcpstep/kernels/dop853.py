@@ -10,10 +10,8 @@ from typing import Any
 
 import numpy as np
 
-STAGES, EXTRA_STAGES = (
-    12,
-    3,
-)  # of the step, and of its dense output; between them the rates at the end of the step
+# Of the step, and of its dense output; between them the rates at the end of the step
+STAGES, EXTRA_STAGES = 12, 3
 ALL = STAGES + 1 + EXTRA_STAGES
 
 TIMES = [

@@ -13,7 +13,7 @@ if not cython.compiled:
     from math import cos, pow, sin, sqrt
 
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import copy, product, size_of_product
     from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
 # Fourth-order differences that stand in for a missing bias: the longest way they take; the third difference, relative
@@ -190,10 +190,7 @@ def differences(
         sign = 1.0 if k % 2 == 0 else -1.0
         rates_ahead(m, t, d * (beside + sign * (1.0 + k // 2)), q, v, shifted, G, rate)
         for c in range(m.n_c):
-            terms = abs(rate[c])
-            for j in range(m.n_q):
-                terms += abs(G[c * m.n_q + j] * v[j])
-            now[3 * c + 2] = max(now[3 * c + 2], terms)
+            now[3 * c + 2] = max(now[3 * c + 2], abs(rate[c]) + size_of_product(G, v, c, m.n_q))
             now[3 * c + k // 2] += (product(G, v, c, m.n_q) + rate[c]) * sign
     bent = 0.0
     for c in range(m.n_c):

@@ -15,8 +15,7 @@ cpdef (double, double) at_most(Model m) noexcept
 cdef double largest_row(double* A, Py_ssize_t n) noexcept nogil
 cdef bint four_at_once(double* x, Py_ssize_t n) noexcept
 @cython.locals(
-    found=Py_ssize_t, i=Py_ssize_t, j=Py_ssize_t, k=Py_ssize_t, c=Py_ssize_t, i_q=Py_ssize_t, i_p=Py_ssize_t,
-    size=double
+    found=Py_ssize_t, i=Py_ssize_t, j=Py_ssize_t, k=Py_ssize_t, c=Py_ssize_t, i_p=Py_ssize_t
 )
 cdef Py_ssize_t find_turn(
     Model m, Py_ssize_t count, double* t, double* q, double* v, Py_ssize_t steps, Py_ssize_t looks, double golden,

@@ -18,7 +18,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles
     from lcpstep.kernels.dynamics import gap_rates, gaps, mass, total_force
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy, finite
+    from lcpstep.kernels.vectors import copy, finite, size_of_product
     from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
 
 
@@ -224,10 +224,7 @@ def find_turn(
             if not (left > most and bent[j] > faster * left):
                 continue
             gap_rates(m, t[k], own, v_own, G, other)
-            size = abs(other[c] * t[k])
-            for i_q in range(n_q):
-                size += abs(G[c * n_q + i_q] * own[i_q])
-            if left > rounding * size:
+            if left > rounding * (abs(other[c] * t[k]) + size_of_product(G, own, c, n_q)):
                 found = j
             for i_p in range(n_places):
                 if found == j:

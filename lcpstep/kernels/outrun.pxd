@@ -7,5 +7,4 @@ cpdef steepest(Model m, object t, object q, object v, object impulse, double lon
 cdef void weigh(
     Model m, Py_ssize_t k, double* t, double* q, double* v, double* impulse, double* work, double* out
 ) noexcept nogil
-cdef double response(Model m, double* f) noexcept nogil
-cdef double kinetic(Model m, double* v) noexcept nogil
+cdef double form(double* A, double* x, Py_ssize_t n) noexcept nogil

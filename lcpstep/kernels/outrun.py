@@ -63,30 +63,22 @@ def weigh(
             x[j] = (1.0 - share) * q[k * n + j] + share * q[(k + 1) * n + j]
             x_t[j] = (1.0 - share) * v[k * n + j] + share * v[(k + 1) * n + j]
         total_force(m, t[k] + share * h, x, x_t, f)
-        strongest = max(strongest, response(m, f))
+        strongest = max(strongest, form(m.M_inverse, f, n))
         gap_rates(m, t[k] + share * h, x, x_t, G, rate)
         for c in range(n_c):
             fastest[c] = max(fastest[c], abs(rate[c]))
     for c in range(n_c):
         pushed += abs(impulse[(k + 1) * n_c + c]) * fastest[c]
-    start, end = kinetic(m, after(v, k * n)), kinetic(m, after(v, (k + 1) * n))
+    start, end = 0.5 * form(m.M, after(v, k * n), n), 0.5 * form(m.M, after(v, (k + 1) * n), n)
     speed = sqrt(2.0 * start) + h * sqrt(strongest)
     allowed = 0.5 * speed * speed + pushed
     if not end <= out[0] * allowed:
         out[0], out[1], out[2], out[3] = end / allowed, k, start, end
 
 
-def response(m: Model, f: Doubles) -> float:
-    """f^T M^-1 f of a constant matrix."""
+def form(A: Doubles, x: Doubles, n: int) -> float:
+    """x^T A x."""
     total = 0.0
-    for i in range(m.n_q):
-        total += f[i] * product(m.M_inverse, f, i, m.n_q)
-    return total
-
-
-def kinetic(m: Model, v: Doubles) -> float:
-    """v^T M v / 2 of a constant matrix."""
-    total = 0.0
-    for i in range(m.n_q):
-        total += 0.5 * v[i] * product(m.M, v, i, m.n_q)
+    for i in range(n):
+        total += x[i] * product(A, x, i, n)
     return total

@@ -13,6 +13,7 @@ import cython
 if not cython.compiled:
     from lcpstep.kernels.dynamics import moves
     from lcpstep.kernels.model import Model
+    from lcpstep.kernels.vectors import size_of_product
     from lcpstep.pointers import Doubles, abs, min
 
 TOGETHER = 64 * 2.0**-52  # of the terms of a gap, their signs left aside: smaller ones are zero to rounding
@@ -31,9 +32,7 @@ def gap_rounding(m: Model, G: Doubles, q: Doubles, c: int, path: float) -> float
         size += abs(m.offset[c])
         if moves(m):
             size += abs(m.motion_now[3 * c])
-    for j in range(m.n_q):
-        size += abs(G[c * m.n_q + j] * q[j])
-    return TOGETHER * size
+    return TOGETHER * (size + size_of_product(G, q, c, m.n_q))
 
 
 def moment_untold(rounding: float, u: float, since: float) -> float:

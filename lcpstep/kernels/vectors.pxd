@@ -20,6 +20,13 @@ cdef inline double product(double* G, double* v, Py_ssize_t c, Py_ssize_t n) noe
     return total
 
 
+cdef inline double size_of_product(double* G, double* v, Py_ssize_t c, Py_ssize_t n) noexcept nogil:
+    cdef double size = 0.0
+    for j in range(n):
+        size += abs(G[c * n + j] * v[j])
+    return size
+
+
 cdef inline double largest(double* x, double least, Py_ssize_t n) noexcept nogil:
     for i in range(n):
         if x[i] > least:

@@ -31,6 +31,14 @@ def product(G: Doubles, v: Doubles, c: int, n: int) -> float:
     return total
 
 
+def size_of_product(G: Doubles, v: Doubles, c: int, n: int) -> float:
+    """Size of the terms of (G v)_c, their signs left aside."""
+    size = 0.0
+    for j in range(n):
+        size += abs(G[c * n + j] * v[j])
+    return size
+
+
 def largest(x: Doubles, least: float, n: int) -> float:
     """Largest magnitude of the entries of x, or `least`."""
     for i in range(n):

@@ -59,16 +59,9 @@ class MoreauRun(StepRun):
         if self.method.tolerance is not None:
             order, tolerance = 2 if self.method.theta == 0.5 else 1, self.method.tolerance
             span, h = self.scene.t_span, self.method.h
+            clock = Clock(span, self.scene.corners, self.scene.period)
             self.controlled_by(
-                Attempts(
-                    self.loop,
-                    lambda h: self.plan_for(h).matrices,
-                    Clock(span, self.scene.corners, self.scene.period),
-                    span,
-                    h,
-                    tolerance,
-                    order,
-                )
+                Attempts(self.loop, lambda h: self.plan_for(h).matrices, clock, span, h, tolerance, order)
             )
         return Status.DONE
 

@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.stepping.steps import LEFT, RESOLUTION, TURNS
+from lcpstep.stepping.steps import LEFT, RESOLUTION, ROUNDING, TURNS
 
 Array = NDArray[np.float64]
-ROUNDING = 1e-13  # of the terms of a rate: `theta_method.row_impulses`
 
 
 def opens_and_closes(u: Array, slow: float) -> bool:

@@ -30,12 +30,12 @@ from lcpstep.lcp.newton import PATIENCE, STRICT
 from lcpstep.lcp.saddle import REFINED
 from lcpstep.lcp.status import NOTHING, ROUNDING, TOLERANCE
 from lcpstep.stepping.sparse_path import BACKWARDS, FORWARDS, GOLDEN, OPEN, SIGN, STICK, Path
+from lcpstep.stepping.steps import CONTRADICTION, largest
 
 PROXIMAL = 1e-10  # d, relative to the mobility of a row
 SMALLEST = 1e-300
 REFINEMENTS = 20
 CENTRES = 20  # proximal points
-CONTRADICTION = 1e-9  # of the terms of a rate: `constraints.joint_rows`
 
 
 class Problem(NamedTuple):
@@ -143,9 +143,8 @@ class Coupled:
                 best = min(best, point, key=Point.worst)
                 if best.solved:
                     break
-            if (
-                best.solved and best.worst() > STRICT
-            ):  # by the distance from the centre, which is less from here
+            if best.solved and best.worst() > STRICT:
+                # By the distance from the centre, which is less from here
                 best = min(best, self.settle(problem, best.modes, best.p, best.p), key=Point.worst)
         return best
 
@@ -288,8 +287,3 @@ def relative(value: Any, size: Any, rounding: Any) -> Any:
     """Values next to the size of their terms; what is rounding counts as zero."""
     value = np.sign(value) * np.maximum(np.abs(value) - rounding, 0.0)
     return value / np.where(size > 0.0, size, 1.0)
-
-
-def largest(values: Any) -> float:
-    """The largest size of numbers."""
-    return float(np.max(np.abs(values), initial=0.0))

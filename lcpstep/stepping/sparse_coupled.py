@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 from lagrangian import Joints, Scene
 from lcpstep.recording import Kept
 from lcpstep.stepping.sparse import SparseRun
-from lcpstep.stepping.sparse_blows import ROUNDING, Blows
-from lcpstep.stepping.sparse_coulomb import CONTRADICTION, STICK, Coupled, Point, Problem
+from lcpstep.stepping.sparse_blows import Blows
+from lcpstep.stepping.sparse_coulomb import STICK, Coupled, Point, Problem
 from lcpstep.stepping.sparse_equations import Equations, JointRows, Step
 from lcpstep.stepping.sparse_stiction import Stiction
+from lcpstep.stepping.steps import CANCELLED, CONTRADICTION, CONVERGED, NO_APPROACH, RESOLUTION, ROUNDING
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS
 from lcpstep.trajectory import Status
 
@@ -29,10 +30,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 FEW = 200  # as of `sparse`
-CONVERGED = 1e-12  # change of the velocity, relative to it; this and the next two: `row_impulses`
-CANCELLED = 0.1
-NO_APPROACH = 1e-11
-EPSILON = float(np.finfo(float).eps)
 
 
 class Before(NamedTuple):
@@ -102,7 +99,7 @@ class CoupledRun(SparseRun):
             modes, p = point.modes, point.p
             terms = np.abs(v_free) + point.size_x / step.coupled.diagonal
             v = v_free + point.x
-            v[np.abs(v) <= np.maximum(ROUNDING * terms, EPSILON * speed)] = 0.0
+            v[np.abs(v) <= np.maximum(ROUNDING * terms, RESOLUTION * speed)] = 0.0
             scale = max(np.max(np.abs(v)), np.max(np.abs(self.v)), CANCELLED * np.max(terms))
             if not self.joints.turning or np.max(np.abs(v - before)) <= CONVERGED * scale:
                 break
@@ -151,12 +148,8 @@ class CoupledRun(SparseRun):
             modes, p, v = point.modes, point.p, before.v + point.x
             before = Before(v, self.equations.G_rows.times(v) - rest[1], self.T @ v + rest[2])
             if whole is not None:
-                added = {
-                    "x": whole.x + point.x,
-                    "p": whole.p + point.p,
-                    "size_x": whole.size_x + point.size_x,
-                }
-                point = point._replace(**added)
+                x, p_all, size_x = whole.x + point.x, whole.p + point.p, whole.size_x + point.size_x
+                point = point._replace(x=x, p=p_all, size_x=size_x)
             whole = point
         return whole, Status.DONE
 

@@ -13,9 +13,10 @@ from lcpstep.kernels.function import Function
 from lcpstep.lcp.saddle import Saddle
 from lcpstep.lcp.sparse_rows import SparseRows
 from lcpstep.model import c_functions
+from lcpstep.stepping.steps import RESOLUTION
 
 Array = NDArray[np.float64]
-REST = 8 * np.finfo(float).eps  # of the size of a velocity's terms: zero
+REST = 8 * RESOLUTION  # of the size of a velocity's terms: zero
 
 
 class Callbacks:

@@ -103,12 +103,8 @@ class StepRun(Run):
         """All states kept, and the last one where states are kept by steps or events."""
         s, end = super().states(), self.scene.t_span[1]
         if not self.kept.given and len(s.t) == 0:  # an interrupt before the first step
-            s = s.and_then(
-                self.scene.t_span[0],
-                np.array(self.scene.q0),
-                np.array(self.scene.v0),
-                np.zeros(s.impulse.shape[1]),
-            )
+            q, v = np.array(self.scene.q0), np.array(self.scene.v0)
+            s = s.and_then(self.scene.t_span[0], q, v, np.zeros(s.impulse.shape[1]))
         if not self.kept.given and self.now > s.t[-1]:
             s = self.with_last(s)
         if len(s.t) and abs(s.t[-1] - end) <= unresolved(self.scene.t_span, self.method.h):

@@ -22,6 +22,11 @@ RESTING = 1e-13  # of the size of the scene: a gap this small is closed
 UNTOLD = 4.0 * RESOLUTION  # of a time: its rounding, in which an obstacle moves on under a body
 TURNS = 200  # blows in a step of `Moreau` for each of its contacts; more go on in the next one
 LEFT = 1e-6  # of the fastest approach: what is slower ends in a plastic blow
+CONVERGED = 1e-12  # change of a velocity that is iterated for, relative to it
+CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be known better than these
+ROUNDING = 1e-13  # of these terms: what is left of it is no motion
+NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
+CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
 # Relative: what rounding may make of the phase of a callback, and of the time of a corner, off which times are moved
 MARGIN = 2.0**-49
 

@@ -20,7 +20,6 @@ cdef void decide(Arc s) noexcept nogil
 cdef void follow(Arc s, bint slides) noexcept nogil
 cdef double first_end(Arc s, double limit) noexcept nogil
 cdef double touch(Arc s, double tau, double u) noexcept nogil
-cdef double stride(double g, double u, double most) noexcept nogil
 cdef double leave(double u, double bend, double second, double third, double noise) noexcept nogil
 cdef void step(Arc s) noexcept nogil
 cdef void turn(Arc s, double t) noexcept nogil

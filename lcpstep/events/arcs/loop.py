@@ -20,8 +20,6 @@ from lcpstep.events.flight.contact import SLACK
 from lcpstep.kernels.status import DONE
 
 if not cython.compiled:
-    from math import sqrt
-
     from lcpstep.arrays import doubles, indices
     from lcpstep.events.arcs.motion import (
         Arc,
@@ -37,6 +35,7 @@ if not cython.compiled:
     )
     from lcpstep.kernels.clock import NOISE, RESOLUTION
     from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
+    from lcpstep.kernels.quadratic import first_zero
     from lcpstep.pointers import abs, inf, max, min
 
 STILL = 100.0  # tolerances: a sliding velocity this small at the start is zero
@@ -121,7 +120,7 @@ def first_end(s: Arc, limit: float) -> float:
             if tau == 0.0 and g == 0.0:
                 clear = leave(u, way * here, second, third, s.noise)
             else:
-                clear = stride(g, u, second)
+                clear = first_zero(g, u, -0.5 * second)
             if clear < h:
                 h, side = clear, way
         if not tau + h < limit:
@@ -148,22 +147,10 @@ def touch(s: Arc, tau: float, u: float) -> float:
     return 0.0
 
 
-def stride(g: float, u: float, most: float) -> float:
-    """How long a function of value g and rate u stays positive if its second derivative is at most so large."""
-    if g <= 0.0:
-        if u <= 0.0:
-            return 0.0
-        g = 0.0
-    if most == 0.0:
-        return inf if u >= 0.0 else -g / u
-    root = sqrt(u * u + 2.0 * most * g)
-    return (u + root) / most if u >= 0.0 else 2.0 * g / (root - u)
-
-
 def leave(u: float, bend: float, second: float, third: float, noise: float) -> float:
-    """The same of one that begins at zero; a rate that is zero to rounding leaves it to the second derivative."""
+    """How long a function that begins at zero stays positive; a rate that is zero to rounding leaves it to `bend`."""
     u = 0.0 if abs(u) <= noise else u
-    h = stride(0.0, u, second)
+    h = first_zero(0.0, u, -0.5 * second)
     if u >= 0.0 and bend > 0.0 and third > 0.0:
         h = max(h, 3.0 * bend / third)
     return h

@@ -18,10 +18,10 @@ import cython
 import numpy as np
 
 if not cython.compiled:
-    from math import cos, hypot, sin, sqrt
+    from math import cos, hypot, sin
 
     from lcpstep.arrays import doubles
-    from lcpstep.events.flight.oscillator import fundamental
+    from lcpstep.events.flight.oscillator import envelope, fundamental
     from lcpstep.kernels.clock import NOISE, Clock
     from lcpstep.pointers import abs, after, inf
 
@@ -154,20 +154,19 @@ def rise(s: Arc, tau: float) -> tuple[float, float]:
 def bends(s: Arc) -> tuple[float, float, float]:
     """D'' at the base, and what |D''| and |D'''| never exceed on the arc.
 
-    The free motion obeys its own equation in every derivative, so that their envelopes only shrink.
+    The free motion obeys its own equation in every derivative.
     """
     b2, o2 = s.belt * s.belt, s.Omega * s.Omega
     belt, force = b2 * hypot(s.P1, s.Q1), o2 * hypot(s.P2, s.Q2)
     here = -b2 * (s.P1 * s.cos1 + s.Q1 * s.sin1) - o2 * (s.P2 * s.cos2 + s.Q2 * s.sin2)
     second, third = belt + force, abs(s.belt) * belt + abs(s.Omega) * force
-    w = s.w2 - s.delta * s.delta
-    if s.direction != 0.0 and w > 0.0:
+    if s.direction != 0.0 and s.w2 > s.delta * s.delta:
         b = -2.0 * s.delta * s.a - s.w2 * s.dzeta
         c = -2.0 * s.delta * b - s.w2 * s.a
         d = -2.0 * s.delta * c - s.w2 * b
         here += b
-        second += sqrt(b * b + (c + s.delta * b) * (c + s.delta * b) / w)
-        third += sqrt(c * c + (d + s.delta * c) * (d + s.delta * c) / w)
+        second += envelope(s.delta, s.w2, b, c)
+        third += envelope(s.delta, s.w2, c, d)
     return here, second, third
 
 

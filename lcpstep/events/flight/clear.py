@@ -12,6 +12,7 @@ if not cython.compiled:
     from math import sqrt
 
     from lcpstep.events.flight.motion import Flight, absolute
+    from lcpstep.events.flight.oscillator import envelope
     from lcpstep.pointers import abs, inf, max, min
 
 LEAPS = 12  # at most, of an open flight
@@ -43,15 +44,14 @@ def suspect(s: Flight, length: float, g: float, u: float, alpha: float) -> bool:
 def hardest(s: Flight) -> float:
     """Bound on |y''| in the rest of an undamped or damped flight; infinite where none is known.
 
-    The acceleration of the remainder obeys its own equation of motion, so that its envelope only shrinks.
+    The acceleration of the remainder obeys its own equation of motion.
     """
     delta, w2 = s.delta, s.w2
     a = s.f0 - 2.0 * delta * s.dz0 - w2 * s.z0
     if delta == 0.0 and w2 == 0.0:
         size = abs(a)
     elif delta >= 0.0 and w2 > delta * delta:
-        jerk = -2.0 * delta * a - w2 * s.dz0
-        size = sqrt(a * a + (jerk + delta * a) * (jerk + delta * a) / (w2 - delta * delta))
+        size = envelope(delta, w2, a, -2.0 * delta * a - w2 * s.dz0)
     else:
         size = inf
     return size + s.Omega * s.Omega * (abs(s.X) + abs(s.Y))

@@ -102,14 +102,8 @@ class Flight(Clock):
         self.low, self.high = inf, -inf
         self.now, self.t_end, self.mode, self.hold = t, t_end, FREE, -inf
         self.g = self.u = self.alpha = self.impulse[0] = 0.0
-        self.begun, self.on_surface, self.g0, self.u0, self.alpha0, self.peak = (
-            False,
-            False,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-        )
+        self.begun = self.on_surface = False
+        self.g0 = self.u0 = self.alpha0 = self.peak = 0.0
         self.z0 = self.dz0 = self.q0 = self.v0 = 0.0
         self.y_tau = self.w_tau = self.a_tau = self.c1 = self.c2 = self.c3 = 0.0
         self.tau = nan

@@ -5,7 +5,6 @@ cdef Py_ssize_t PASSES
 cdef double NONE, RESOLUTION, SHORT, LOW, SETTLED, LONGER, N1, N2, N3
 
 cdef (double, double) hop_end(Flight s, double a, double b) noexcept nogil
-cdef double fall(double g, double u, double alpha) noexcept nogil
 cdef double stretch(Flight s) noexcept nogil
 cdef bint is_low(Flight s, double a) noexcept nogil
 cdef (double, double, double) fit(Flight s, double h) noexcept nogil

@@ -19,9 +19,8 @@ import cython
 from lcpstep.events.flight.contact import NONE, RESOLUTION
 
 if not cython.compiled:
-    from math import sqrt
-
     from lcpstep.events.flight.motion import Flight, free
+    from lcpstep.kernels.quadratic import first_zero
     from lcpstep.pointers import abs, min
 
 SHORT = 0.02  # of the scan interval: the cubic resolves the acceleration to rounding
@@ -35,18 +34,10 @@ N1, N2, N3 = 0.1127016653792583, 0.5, 0.8872983346207417  # nodes of Gauss on [0
 def hop_end(s: Flight, a: float, b: float) -> tuple[float, float]:
     """End of the short hop that begins at a, and the gap velocity there; NONE if none does before b."""
     if a == 0.0 and s.on_surface and s.alpha < 0.0 and (s.u > 0.0 or s.g0 > 0.0):
-        guess = fall(s.g0, s.u, s.alpha)
+        guess = first_zero(s.g0, s.u, 0.5 * s.alpha)
         if guess < SHORT * s.scan:
             return short_hop(s, guess, b)
     return NONE, 0.0
-
-
-def fall(g: float, u: float, alpha: float) -> float:
-    """Time in which a gap g >= 0 closes that begins with the velocity u, under a constant acceleration alpha < 0."""
-    if g == 0.0:
-        return 2.0 * u / -alpha
-    root = sqrt(u * u - 2.0 * alpha * g)
-    return (root + u) / -alpha if u > 0.0 else 2.0 * g / (root - u)
 
 
 def stretch(s: Flight) -> float:

@@ -11,6 +11,7 @@ cdef class Oscillator:
     cdef readonly double delta, w2, f0, X, Y, Omega
 
 cpdef object oscillator_of(Model m)
+cdef double envelope(double delta, double w2, double x, double dx) noexcept nogil
 cpdef (double, double, double) fundamental(double delta, double w2, double tau) noexcept nogil
 cdef (double, double, double) undamped_series(double w2, double tau) noexcept nogil
 cdef (double, double, double) series(double delta, double w2, double tau) noexcept nogil

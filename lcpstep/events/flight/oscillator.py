@@ -69,6 +69,12 @@ def oscillator(
     )
 
 
+def envelope(delta: float, w2: float, x: float, dx: float) -> float:
+    """What an underdamped free motion never exceeds from a value and its rate on: its envelope only shrinks."""
+    rise = dx + delta * x
+    return sqrt(x * x + rise * rise / (w2 - delta * delta))
+
+
 def fundamental(delta: float, w2: float, tau: float) -> tuple[float, float, float]:
     """S, S' and P at tau >= 0."""
     if delta == 0.0 and w2 == 0.0:

@@ -11,27 +11,17 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.flight.contact import NONE, RESOLUTION
+from lcpstep.gauss import gauss
 
 if not cython.compiled:
     from lcpstep.events.flight.motion import Flight, on_obstacle
     from lcpstep.pointers import abs, inf, min
 
 PROBES = 4  # samples of alpha per interval while the contact is closed
-NODES = 8  # and weights of Gauss on [0, 1], for the impulse of the contact force
+NODES = 8  # and weights of Gauss, for the impulse of the contact force
 if not cython.compiled:
     NODE, WEIGHT = [0.0] * NODES, [0.0] * NODES
-for place, (node, weight) in enumerate(
-    (
-        (0.019855071751231912, 0.05061426814518813),
-        (0.10166676129318664, 0.11119051722668724),
-        (0.2372337950418355, 0.15685332293894363),
-        (0.4082826787521751, 0.18134189168918100),
-        (0.5917173212478249, 0.18134189168918100),
-        (0.7627662049581645, 0.15685332293894363),
-        (0.8983332387068134, 0.11119051722668724),
-        (0.9801449282487681, 0.05061426814518813),
-    )
-):
+for place, (node, weight) in enumerate(zip(*gauss(NODES), strict=True)):
     NODE[place], WEIGHT[place] = node, weight
 
 

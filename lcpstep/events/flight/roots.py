@@ -45,9 +45,7 @@ def first_in_half(s: Flight, a: float, g_a: float, u_a: float, b: float, g_b: fl
             m = root(s, 1, a, u_a, b, u_b, NONE)
             g_m, u_m, _ = free(s, m)
         return m if g_m <= 0.0 else gap_root(s, m, g_m, u_m, b, g_b, u_b)
-    if (
-        u_a < 0.0 and u_b > 0.0 and g_a > 0.0
-    ):  # a dip, from which the gap has opened again at b, or is about to
+    if u_a < 0.0 and u_b > 0.0 and g_a > 0.0:  # a dip, from which the gap has opened at b, or is about to
         m = root(s, 1, a, u_a, b, u_b, NONE)
         g_m, u_m, _ = free(s, m)
         return gap_root(s, a, g_a, u_a, m, g_m, u_m) if g_m <= 0.0 else NONE

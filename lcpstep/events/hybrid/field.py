@@ -65,11 +65,8 @@ class Machine:
         kept: Any,
     ) -> None:
         own = {name: np.array(table, dtype=np.intp) for name, table in tables.items()}
-        self.numbers, self.out_array, self.signs = (
-            np.zeros((VECTORS, n)),
-            np.zeros(1),
-            np.array(sign, dtype=float),
-        )
+        self.numbers, self.out_array = np.zeros((VECTORS, n)), np.zeros(1)
+        self.signs = np.array(sign, dtype=float)
         self.lengths, self.shortest = np.array(length, dtype=float), float(np.min(length))
         self.length = doubles(self.lengths)
         self.n, self.n_guards, self.dt = n, len(own["kind"]), dt
@@ -78,11 +75,8 @@ class Machine:
         self.surfaces = Functions(functions["surfaces"], p, n, 0, (1,))
         self.values = Functions(functions["values"], p, n, 0, (1,))
         self.resets = Functions(functions["resets"], p, n, 0, (n,))
-        self.has_reset, self.first, self.at_once = (
-            indices(own["has_reset"]),
-            indices(own["first"]),
-            indices(own["at_once"]),
-        )
+        self.has_reset, self.at_once = indices(own["has_reset"]), indices(own["at_once"])
+        self.first = indices(own["first"])
         self.kind, self.target = indices(own["kind"]), indices(own["target"])
         self.below, self.above = indices(own["below"]), indices(own["above"])
         self.sign, self.out, self.F = doubles(self.signs), doubles(self.out_array), doubles(self.numbers)

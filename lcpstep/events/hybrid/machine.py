@@ -50,7 +50,7 @@ def machine(scene: HybridScene) -> Machine:
         "above": not_sliding + [index[surface.above] for surface in surfaces],
     }
     span = min(scene.period, scene.t_span[1] - scene.t_span[0])
-    length = _lengths(scene, [f for fs in functions.values() for f in fs], span)
+    length = _lengths(scene, list(once.values()), span)
     return Machine(
         system.n_x, np.array(scene.p), addresses, integers, [row[2] for row in table], TIME_DIFFERENCE * span,
         length, list(made.values()),
@@ -78,9 +78,7 @@ def _lengths(scene: HybridScene, functions: list[Any], span: float) -> Array:
     rates = np.max([np.abs(value(mode.field)(x)) for mode in system.modes.values()], axis=0)
     size = np.maximum(size, span * rates)
     size[size == 0.0] = 1.0
-    found = [
-        lengths(value(f), x + ASIDE * size, DIFFERENCE, size) for f in {id(f): f for f in functions}.values()
-    ]
+    found = [lengths(value(f), x + ASIDE * size, DIFFERENCE, size) for f in functions]
     return np.minimum(np.min(found, axis=0), 1.0)
 
 

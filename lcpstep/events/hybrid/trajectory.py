@@ -83,10 +83,9 @@ class HybridTrajectory(Answer):
             if not np.all(np.isin(times, s.t)):
                 raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
             return s.x[row[0]] if np.ndim(t) == 0 else s.x[row]
+        length = np.where(s.h[row] > 0.0, s.h[row], np.inf)
         with np.errstate(invalid="ignore"):
-            fraction = np.clip((times - s.t[row]) / np.where(s.h[row] > 0.0, s.h[row], np.inf), 0.0, 1.0)[
-                :, None
-            ]
+            fraction = np.clip((times - s.t[row]) / length, 0.0, 1.0)[:, None]
         total = np.zeros((len(times), s.x.shape[1]))
         for k in range(7):
             total = (total + s.dense[row, 6 - k]) * (fraction if k % 2 == 0 else 1.0 - fraction)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.codes import NO_FORCES, OPEN
+from lcpstep.events.codes import OPEN
 from lcpstep.kernels.status import DONE, JOINTS_FAILED
 
 if not cython.compiled:
@@ -33,9 +33,10 @@ DRIFT = 1e-9  # the same: one that the rows held do not keep at zero
 def contact_forces(s: Mechanism) -> int:
     """Forces and accelerations of the closed contacts; those that open are no longer closed.
 
-    The acceleration is left in `a`, gap accelerations in `curve`, forces in `multiplier`.
+    The acceleration is left in `a`, gap accelerations in `curve`, forces in `multiplier`; whether these would do
+    says `stands`.
     """
-    n_j, solved = s.n_j, True
+    n_j = s.n_j
     accelerate_on_joints(s)
     if n_j > 0:
         s.culprit = contradiction(s, s.a)
@@ -50,8 +51,7 @@ def contact_forces(s: Mechanism) -> int:
             s.lift[s.n_members] = 0.5 * NOISE * size_of(s, n_j + c, 0.0, s.a_free)
             s.n_members += 1
     if s.n_members > 0:
-        solved = solve_members(s)
-        if solved:
+        if solve_members(s):
             open_contacts(s)
             unload(s, after(s.multiplier, s.n_j), s.loaded, s.n_c)
         copy(s.a, s.a_free, s.n_q)
@@ -59,7 +59,7 @@ def contact_forces(s: Mechanism) -> int:
         constrain(s, s.a, s.bias)
         balance(s, s.a)
     list_forces(s)
-    return DONE if solved or presses(s) else NO_FORCES
+    return DONE
 
 
 def joints_own(s: Mechanism, c: int) -> bool:
@@ -124,19 +124,6 @@ def enters(s: Mechanism, c: int) -> bool:
     i = s.n_j + c
     alpha = product(s.R, s.a, i, s.n_q)
     return alpha < 0.0 and alpha < -PASSES * size_of_acceleration(s, i, s.a)
-
-
-def presses(s: Mechanism) -> bool:
-    """Whether the forces of the rows held are those of the closed contacts: none pulls, none is passed."""
-    a, most = s.a, largest(s.held, 0.0, s.n_held)
-    size = largest(s.a_free, largest(a, 0.0, s.n_q), s.n_q)
-    for c in range(s.n_c):
-        if s.multiplier[s.n_j + c] < -CHECKED * most:
-            return False
-        i = s.n_j + c
-        if s.mode[c] != OPEN and product(s.R, a, i, s.n_q) < -CHECKED * size:
-            return False
-    return True
 
 
 def open_contacts(s: Mechanism) -> None:

@@ -1,7 +1,7 @@
 cimport cython
 from lcpstep.pointers cimport Doubles, Indices
 
-cdef double NEGLIGIBLE, NOTHING, NEARLY, LOST, EPSILON, CONTRADICTION, STALLED
+cdef double NEGLIGIBLE, NOTHING, NEARLY, LOST, RESOLUTION, CONTRADICTION, STALLED
 cdef Py_ssize_t REFINEMENTS, SWEEPS, VECTORS
 
 

@@ -17,18 +17,18 @@ from __future__ import annotations
 import cython
 import numpy as np
 
+from lcpstep.stepping.steps import CONTRADICTION, RESOLUTION
+
 if not cython.compiled:
     from math import sqrt
 
     from lcpstep.arrays import doubles, indices
     from lcpstep.kernels.linear import factorise, solve
-    from lcpstep.kernels.vectors import copy, largest, product
+    from lcpstep.kernels.vectors import copy, largest, product, size_of_product
     from lcpstep.pointers import Doubles, Indices, abs, after, inf, max
 
 NEGLIGIBLE = 1e-7  # of a joint's mobility: a direction this stiff is another joint's, up to drift
-CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
 STALLED = 1e4  # of the slack: how much rounding in the gaps' own arithmetic may leave
-EPSILON = 2.220446049250313e-16
 NOTHING = 1e-12  # of the terms of a number: what is left of one
 NEARLY = 1e-3  # of a mobility: what joints leave of it with digits enough
 LOST = 3e-7  # of a row: what joints leave of it that has no digits for velocities
@@ -110,7 +110,7 @@ def diagonalise(e: Elimination) -> None:
             for j in range(i):
                 off = max(off, abs(B[i * n + j]))
                 rotate(B, V, j, i, n)
-        if off <= EPSILON:
+        if off <= RESOLUTION:
             break
     for i in range(n):
         e.values[i] = B[i * n + i]
@@ -118,7 +118,7 @@ def diagonalise(e: Elimination) -> None:
 
 def rotate(B: Doubles, V: Doubles, p: int, q: int, n: int) -> None:
     """Make B_pq zero by a rotation, which V collects."""
-    if abs(B[p * n + q]) <= EPSILON * EPSILON:  # of the diagonal: its square would overflow below
+    if abs(B[p * n + q]) <= RESOLUTION * RESOLUTION:  # of the diagonal: its square would overflow below
         return
     tau = (B[q * n + q] - B[p * n + p]) / (2.0 * B[p * n + q])
     t = (1.0 if tau >= 0.0 else -1.0) / (abs(tau) + sqrt(1.0 + tau * tau))
@@ -149,7 +149,7 @@ def solve_joints(e: Elimination, out: Doubles) -> None:
                 e.r[i] -= e.S[i * n + j] * e.x[j]
                 size += abs(e.S[i * n + j] * e.x[j])
             worst, largest = max(worst, abs(e.r[i])), max(largest, size)
-        if worst <= EPSILON * largest or worst > 0.5 * before:
+        if worst <= RESOLUTION * largest or worst > 0.5 * before:
             break
         before = worst
     for i in range(n):
@@ -263,10 +263,7 @@ def arrived(worst: float, before: float, slack: float, G: Doubles, n: int, q: Do
     if worst <= slack or not 0.5 * before < worst:
         return worst <= slack
     for k in range(n):
-        terms = 0.0
-        for i in range(n_q):
-            terms += abs(G[k * n_q + i] * q[i])
-        slack = max(slack, EPSILON * terms)
+        slack = max(slack, RESOLUTION * size_of_product(G, q, k, n_q))
     return worst <= STALLED * slack
 
 

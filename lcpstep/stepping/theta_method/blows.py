@@ -23,8 +23,8 @@ from lcpstep.stepping.theta_method.codes import FINISHED, NEED_LCP
 
 if not cython.compiled:
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import clear, copy, copy_indices, largest, product
-    from lcpstep.pointers import abs, max, min
+    from lcpstep.kernels.vectors import clear, copy, copy_indices, largest, product, size_of_product
+    from lcpstep.pointers import max, min
     from lcpstep.stepping.theta_method.moving import Blows, Plan, Rows, State
     from lcpstep.stepping.theta_method.responses import prepare
     from lcpstep.stepping.theta_method.row_impulses import forced, impulses, pose, take_part
@@ -51,10 +51,7 @@ def separates(plan: Plan, s: State, c: Rows, b: Blows, n_a: int) -> bool:
 
 def unmoved(plan: Plan, s: State, c: Rows, i: int) -> float:
     """The gap velocity that a step does not show: it moves the coordinates by no more than their rounding."""
-    size = 0.0
-    for j in range(s.n_q):
-        size += abs(c.H[i * s.n_q + j] * s.q[j])
-    return RESOLUTION * size / plan.h
+    return RESOLUTION * size_of_product(c.H, s.q, i, s.n_q) / plan.h
 
 
 def one_after_another(

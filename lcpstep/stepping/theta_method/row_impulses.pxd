@@ -3,7 +3,7 @@ from lcpstep.kernels.model cimport Model
 from lcpstep.stepping.theta_method.moving cimport Plan, Rows, State
 
 cdef Py_ssize_t FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
-cdef double UNTOLD, CONVERGED, CANCELLED, EPS, ROUNDING, NO_APPROACH
+cdef double UNTOLD, CONVERGED, CANCELLED, RESOLUTION, ROUNDING, NO_APPROACH
 
 @cython.locals(impact=bint)
 cdef Py_ssize_t impulses(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.stepping.steps import CANCELLED, CONVERGED, NO_APPROACH, RESOLUTION, ROUNDING
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
 
 if not cython.compiled:
@@ -17,19 +18,14 @@ if not cython.compiled:
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.repose import AT_REST
     from lcpstep.kernels.stiction import rest_where_possible, solve_steps
-    from lcpstep.kernels.vectors import finite, largest, product
+    from lcpstep.kernels.vectors import finite, largest, product, size_of_product
     from lcpstep.pointers import Doubles, Indices, abs, after, max
     from lcpstep.stepping.constraints.joint_rows import distribute, eliminate, lost
     from lcpstep.stepping.theta_method.moving import Plan, Rows, State
     from lcpstep.stepping.theta_method.responses import respond
     from lcpstep.stepping.theta_method.turned_rows import put_rows_on_joints, sweep_out_turned
 
-CONVERGED = 1e-12  # change of the velocity, relative to it
-CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be known better than these
-EPS = 2.0**-52
-ROUNDING = 1e-13  # of these terms: what is left of it is no motion
 UNTOLD = 1e-9  # of the terms of a rate: what joints may leave of it where they leave nothing of its row
-NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
 
 
 def impulses(
@@ -168,9 +164,7 @@ def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
         i = c.problem.ids[c.problem.carrier[f]]
         u = c.T_t[i] + product(c.T, s.next_v, i, s.n_q)
         _, size = motion_of(c.problem, c.problem.impulse, n_a + f, n_a + n_f)
-        size += abs(c.T_t[i])
-        for j in range(s.n_q):
-            size += abs(c.T[i * s.n_q + j] * s.next_v[j])
+        size += size_of_rate(c, s.next_v, c.n_c + i, s.n_q)
         s.sticks[i] = 1 if abs(u) <= AT_REST * size else 0
 
 
@@ -206,10 +200,7 @@ def forget_tiny(rate: Doubles, n: int) -> None:
 
 def size_of_rate(c: Rows, v: Doubles, i: int, n_q: int) -> float:
     """Size of what the rate of row i is a sum of."""
-    size = abs(c.H_t[i])
-    for j in range(n_q):
-        size += abs(c.H[i * n_q + j] * v[j])
-    return size
+    return abs(c.H_t[i]) + size_of_product(c.H, v, i, n_q)
 
 
 def usable(W: Doubles, ids: Indices, n_k: int, n: int) -> bool:
@@ -260,7 +251,7 @@ def apply(plan: Plan, s: State, c: Rows, n_k: int) -> bool:
         if c.n_f > 0 and abs(total) <= ROUNDING * terms:
             total = 0.0
         change = max(change, abs(total - s.next_v[i]))
-        moved = max(moved, plan.h * abs(total - s.next_v[i]) - EPS * abs(s.q[i]))
+        moved = max(moved, plan.h * abs(total - s.next_v[i]) - RESOLUTION * abs(s.q[i]))
         size = max(max(size, abs(total)), max(abs(s.v[i]), CANCELLED * terms))
         s.next_v[i] = total
     s.moved = moved

@@ -246,9 +246,8 @@ def log_events(m: Model, s: State, c: Rows, record: Record, t_next: float) -> No
             record.note(t_next, i, s.u[i], u, c.p[i], kind)
     if not released:
         return
-    gap_rates(
-        m, t_next, s.next_q, s.next_v, c.H, c.H_t
-    )  # those of the law are of contacts that took part in it
+    # Those of the law are of contacts that took part in it
+    gap_rates(m, t_next, s.next_q, s.next_v, c.H, c.H_t)
     for k in range(first, record.event):
         line = after(record.events, k * COLUMNS)
         if line[5] == RELEASE:
