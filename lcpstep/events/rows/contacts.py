@@ -151,8 +151,7 @@ def add_impulse(s: Contacts, i: int, p: float) -> None:
 def measure_velocities(s: Contacts, v: Doubles) -> None:
     """Velocities R v + rate of all rows; `terms` of contacts and tangents grow to their rounding.
 
-    Nor is more known of a velocity than what the forces make of it in a time that cannot be told: of what has come to
-    rest on its obstacles something is left, smaller at each impact, that means nothing.
+    Nor is more known of one than what forces make in a time that cannot be told: what is left at rest means nothing.
     """
     moment = s.untold(0.0)
     for i in range(s.n_r):
@@ -248,9 +247,8 @@ def hold_leaning(s: Contacts) -> None:
     Three feet on a line share two normals and one tangent: their forces are known from these three rows.
     """
     for c in range(s.n_c):
-        i = s.n_j + c
-        if s.mode[c] == LEANS and s.loaded[c] == 1 and not is_held(s, i):
-            hold_row(s, i + s.n_c)
+        if s.mode[c] == LEANS and s.loaded[c] == 1 and not is_held(s, s.n_j + c):
+            hold_row(s, s.n_j + c + s.n_c)
 
 
 def accelerate_on_joints(s: Contacts) -> None:

@@ -1,8 +1,5 @@
-cimport cython
 from lcpstep.kernels.model cimport Model
 from lcpstep.kernels.record cimport Record
 from lcpstep.stepping.pieces.state cimport Plan, Work
 
 cdef Py_ssize_t begin_motion(Model m, Plan plan, Work w, Record record, double t) noexcept nogil
-@cython.locals(some=bint)
-cdef bint touching(Plan plan, Work w) noexcept nogil

@@ -12,7 +12,7 @@ if not cython.compiled:
     from lcpstep.pointers import abs
     from lcpstep.stepping.pieces.codes import CLOSED, EPS, FINISHED, GROUND, NOT_FINITE
     from lcpstep.stepping.pieces.corners import find_corners
-    from lcpstep.stepping.pieces.keep import keep
+    from lcpstep.stepping.pieces.keep import keep, keep_now
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms
     from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, respond
     from lcpstep.stepping.pieces.state import Plan, Work
@@ -37,7 +37,7 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
         respond(m, w)
         for c in range(w.n_c):
             w.alpha[c] = product(m.G, w.free, c, w.n_q)
-    if not plan.plain and touching(plan, w):
+    if not plan.plain:
         gap_bias(m, w, within(w, t), w.q, w.v)
     for c in range(w.n_c):
         if w.gap[c] <= plan.slack:
@@ -50,15 +50,5 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
                 w.closed_now += 1
     if record.n_times == 0:
         keep(w, record, t, 0.0)
-    elif record.times[0] == t:
-        keep(w, record, t, 0.0)
-        record.next_time = 1
+    keep_now(w, record, t)
     return FINISHED
-
-
-def touching(plan: Plan, w: Work) -> bool:
-    """Whether some contact touches."""
-    some = False
-    for c in range(w.n_c):
-        some = some or w.gap[c] <= plan.slack
-    return some

@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.kernels.linear import solve_factored
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import clear, copy, product
+    from lcpstep.kernels.vectors import add, clear, copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
@@ -224,8 +224,7 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
         w.p[c] = p
         w.impulse[c] += p
         w.pushed[c] += p
-        for i in range(w.n_q):
-            w.v[i] += MG[c * w.n_q + i] * p
+        add(w.v, p, after(MG, c * w.n_q), w.n_q)
     for k in range(n_k):
         c = w.chosen[k]
         if w.p[c] == 0.0 and tau > 0.0:

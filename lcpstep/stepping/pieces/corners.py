@@ -15,12 +15,10 @@ from __future__ import annotations
 import cython
 
 if not cython.compiled:
-    from math import floor
-
     from lcpstep.kernels.dynamics import gap_rates, moves
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import abs, inf, max, min
+    from lcpstep.pointers import abs, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, GROUND
     from lcpstep.stepping.pieces.state import Plan, Work
     from lcpstep.stepping.pieces.times import within
@@ -30,23 +28,10 @@ JUMP = 1e-9  # of the velocities at hand: a gap velocity that jumps by less does
 
 def find_corners(plan: Plan, w: Work, t: float) -> tuple[float, float]:
     """The smooth interval that begins at t or holds it; the jump that has been found last is a corner, too."""
-    low, high = -inf, inf
-    if w.jump <= t + plan.margin:
-        low = w.jump
-    else:
-        high = w.jump
-    if plan.n_corners == 0:
-        return low, high
-    turn = 0.0 if plan.period == inf else floor(t / plan.period) * plan.period
-    for k in range(-1, 3):
-        if k == 0 or plan.period < inf:
-            for i in range(plan.n_corners):
-                time = plan.corners[i] + (turn + k * plan.period if plan.period < inf else 0.0)
-                if time <= t + plan.margin:
-                    low = max(low, time)
-                else:
-                    high = min(high, time)
-    return low, high
+    near = t + plan.margin
+    plan.clock.find_named(near)
+    low, high = plan.clock.low, plan.clock.high
+    return (max(low, w.jump), high) if w.jump <= near else (low, min(high, w.jump))
 
 
 def obstacles_move(m: Model) -> bool:

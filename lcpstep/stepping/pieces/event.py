@@ -8,7 +8,7 @@ if not cython.compiled:
     from lcpstep.kernels.linear import grow_factor, solve_factored
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import product
+    from lcpstep.kernels.vectors import add, product
     from lcpstep.pointers import Doubles, abs, after, max
     from lcpstep.stepping.pieces.codes import (
         CORNER,
@@ -106,8 +106,7 @@ def straighten_all(m: Model, w: Work, n_s: int) -> None:
                     n_k += 1
             solve_factored(w.problem, w.n_c, n_k, w.change)
             for k in range(n_k):
-                for i in range(w.n_q):
-                    x[i] += w.MG[w.held[k] * w.n_q + i] * w.change[k]
+                add(x, w.change[k], after(w.MG, w.held[k] * w.n_q), w.n_q)
 
 
 def height(m: Model, w: Work, c: int) -> float:

@@ -23,7 +23,7 @@ if not cython.compiled:
     from lcpstep.kernels.linear import grow_factor, solve_factored
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.turn import Turn
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import add, copy, product
     from lcpstep.pointers import Doubles, after, max
     from lcpstep.stepping.pieces.codes import CLOSED
     from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, respond
@@ -148,8 +148,7 @@ def add_forces(w: Work, out: Doubles, n_k: int) -> None:
     for k in range(n_k):
         c, force = w.held[k], w.change[k]
         w.p[c] += force
-        for i in range(w.n_q):
-            out[i] += w.MG[c * w.n_q + i] * force
+        add(out, force, after(w.MG, c * w.n_q), w.n_q)
 
 
 def expand(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, length: float) -> bool:

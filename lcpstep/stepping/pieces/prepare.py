@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.kernels.clock import Clock
 from lcpstep.kernels.dynamics import moves, varies
 from lcpstep.kernels.model import Model
 from lcpstep.stepping.extent import extent, is_stiff
@@ -46,7 +47,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     n_q, n_c, G = m.n_q, m.n_c, m.arrays["G"]
     trapezoidal = m.linear
     stiff = is_stiff(m)
-    stops, most = turns(scene).stops, longest(scene, m, method)
+    most = longest(scene, m, method)
     constant = trapezoidal and m.flat
     A_inverse, AG, WA = np.zeros((2, n_q, n_q)), np.zeros((2, n_c, n_q)), np.zeros((2, n_c, n_c))
     own = implicit(m, stiff, method, h)
@@ -67,7 +68,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         "slack": ROUNDING * long, "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": most,
-        "corners": np.array(stops, dtype=np.float64), "period": scene.period,
+        "clock": Clock(scene.t_span, turns(scene).stops, scene.period),
         "margin": MARGIN * t_scale,
         "A_inverse": A_inverse, "AG": AG, "WA": WA,
     })  # fmt: skip

@@ -23,9 +23,9 @@ from lcpstep.lcp.status import SOLVED
 if not cython.compiled:
     from lcpstep.kernels.linear import grow_factor, solve_definite, solve_factored
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import clear, copy, largest, product
+    from lcpstep.kernels.vectors import add, clear, copy, largest, product
     from lcpstep.lcp.kernel import solve_small
-    from lcpstep.pointers import Doubles, abs, max, min
+    from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import EPS, ROUNDING
     from lcpstep.stepping.pieces.independent import bear_on_independent
     from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
@@ -255,8 +255,7 @@ def keep_closed(w: Work, W: Doubles, MG: Doubles, n: int) -> bool:
         w.change[i] = -w.residual[w.place[i]]
     solve_factored(w.problem, n, n_k, w.change)
     for i in range(n_k):
-        for j in range(w.n_q):
-            w.a[j] += MG[w.held[i] * w.n_q + j] * w.change[i]
+        add(w.a, w.change[i], after(MG, w.held[i] * w.n_q), w.n_q)
     return True
 
 

@@ -21,8 +21,8 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import gap_rates
     from lcpstep.kernels.model import Model
     from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import abs, max, min
+    from lcpstep.kernels.vectors import add, product
+    from lcpstep.pointers import abs, after, max, min
     from lcpstep.stepping.pieces.chosen import solve_chosen
     from lcpstep.stepping.pieces.codes import (
         ACCUMULATION,
@@ -35,6 +35,7 @@ if not cython.compiled:
         NOT_FINITE,
         ROUNDING,
     )
+    from lcpstep.stepping.pieces.impulses import touch
     from lcpstep.stepping.pieces.keep import keep
     from lcpstep.stepping.pieces.magnitudes import speed_terms
     from lcpstep.stepping.pieces.refine import NONE
@@ -60,17 +61,14 @@ def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
         return LCP_FAILED
     if matters(m, w, span > SHORT_TOGETHER * plan.h):
         w.cut += 1
-    for i in range(n):
-        w.v[i] += span * w.free[i]
+    add(w.v, span, w.free, n)
     for c in range(w.n_c):
         p = w.z[c]
         w.impulse[c] += p
         w.pushed[c] += p
         if p > 0.0:
-            for i in range(n):
-                w.v[i] += w.MG[c * w.n_q + i] * p
-    for i in range(n):
-        w.q[i] += span * w.v[i]
+            add(w.v, p, after(w.MG, c * n), n)
+    add(w.q, span, w.v, n)
     w.sigma = w.end if span == rest else w.sigma + span
     note(m, plan, w, record, now, t + w.sigma, span)
     w.stalled, w.unchanged = 0.0, False
@@ -123,8 +121,7 @@ def note(m: Model, plan: Plan, w: Work, record: Record, start: float, end: float
         if w.status[c] == CLOSED:
             w.gap[c] = w.rate[c] = 0.0
         elif touches and abs(w.rate[c]) <= ROUNDING * speed_terms(plan, w, c):  # at rest: the forces decide
-            w.gap[c] = w.rate[c] = 0.0
-            w.grounded[c], w.touching = GROUND, True
+            touch(w, c)
         else:
             w.gap[c] = max(0.0, w.gap[c] + span * w.rate[c])
             w.grounded[c] = GROUND if w.gap[c] == 0.0 else 0

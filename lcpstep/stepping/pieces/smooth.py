@@ -19,7 +19,7 @@ if not cython.compiled:
     from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, total_force
     from lcpstep.kernels.linear import factorise, grow_factor, solve, solve_factored
     from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy, product
+    from lcpstep.kernels.vectors import add, copy, product
     from lcpstep.pointers import Doubles, abs, after, max, min
     from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
     from lcpstep.stepping.pieces.state import Plan, Work
@@ -232,8 +232,7 @@ def newton_step(w: Work, x: Doubles) -> None:
                     n_k += 1
     solve_factored(w.problem, n_c, n_k, w.change)
     for k in range(n_k):
-        for i in range(w.n_q):
-            x[i] += w.MG[w.held[k] * w.n_q + i] * w.change[k]
+        add(x, w.change[k], after(w.MG, w.held[k] * w.n_q), w.n_q)
 
 
 def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:

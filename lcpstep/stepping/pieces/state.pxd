@@ -1,5 +1,6 @@
 cimport cython
 from lcpstep.kernels.bracket cimport Bracket
+from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.sudden cimport Sudden
 from lcpstep.lcp.workspace cimport Workspace
 from lcpstep.pointers cimport Doubles, Indices
@@ -11,9 +12,10 @@ cdef class Plan:
     cdef object kept
     cdef public double h, made_for
     cdef readonly bint trapezoidal, stiff, steady, plain, constant, small, exact
-    cdef readonly double slack, longest, period, margin
-    cdef readonly Py_ssize_t per_step, many, n_corners
-    cdef Doubles corners, A_inverse, AG, WA, A, unit
+    cdef readonly double slack, longest, margin
+    cdef readonly Py_ssize_t per_step, many
+    cdef Clock clock
+    cdef Doubles A_inverse, AG, WA, A, unit
     cdef Indices pivots
 
 

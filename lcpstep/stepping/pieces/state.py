@@ -46,7 +46,7 @@ class Plan:
     many            impacts of a contact in one step after which hops are taken as one if they end within it
     exact           pieces are Taylor polynomials; else, where pieces are polynomials, Runge-Kutta
     longest         piece of motion
-    corners, n_corners, period    (m,) in [0, period)
+    clock           which knows the corners that the scene names
     margin          by which times are moved off a corner of the scene
     A_inverse : (2, n_q, n_q)     (M + h/2 C + h^2/4 K)^-1, for WHOLE and REST
     AG : (2, n_c, n_q)            (A^-1 G^T)^T
@@ -55,7 +55,7 @@ class Plan:
 
     Parameters
     ----------
-    fields : dict   these by name, but n_corners and work space; A_inverse, AG and WA as arrays
+    fields : dict   these by name, but work space; A_inverse, AG and WA as arrays
     """
 
     def __init__(self, fields: dict[str, Any]) -> None:
@@ -66,10 +66,9 @@ class Plan:
         self.steady, self.plain, self.constant = fields["steady"], fields["plain"], fields["constant"]
         self.small, self.exact = fields["small"], fields["exact"]
         self.slack, self.longest, self.margin = fields["slack"], fields["longest"], fields["margin"]
-        self.per_step, self.many = fields["per_step"], fields["many"]
-        self.period, self.n_corners = fields["period"], len(fields["corners"])
+        self.per_step, self.many, self.clock = fields["per_step"], fields["many"], fields["clock"]
         self.kept = np.zeros((n_q + 1) * n_q), np.zeros(n_q, dtype=np.intp)
-        self.corners, self.A_inverse = doubles(fields["corners"]), doubles(fields["A_inverse"])
+        self.A_inverse = doubles(fields["A_inverse"])
         self.AG, self.WA = doubles(fields["AG"]), doubles(fields["WA"])
         self.A, self.pivots = doubles(self.kept[0]), indices(self.kept[1])
         self.unit = after(self.A, n_q * n_q)
