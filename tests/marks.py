@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from importlib.util import find_spec
 from typing import Any
 
 import pytest
 
 from lcpstep.callbacks import disabled
 
-compiled_only = pytest.mark.skipif(disabled(), reason="nothing is compiled")
+COMPILES = not disabled() and find_spec("numba") is not None  # else own callbacks run in plain Python
+compiled_only = pytest.mark.skipif(not COMPILES, reason="nothing is compiled")
 
 
 def slow(cases: Iterable[Any], *long: Any) -> list[Any]:

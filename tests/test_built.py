@@ -8,9 +8,9 @@ import pytest
 from lagrangian import profiles, scenes
 from lagrangian.scenes import pendulum
 from lcpstep import built, callbacks
-from lcpstep.callbacks import disabled
 from lcpstep.kernels.function import Function
 from lcpstep.kernels.model import shapes
+from tests.marks import compiled_only
 from tests.processes import python
 
 SCENES = [name for name, entry in scenes.CATALOGUE.items() if entry.make().n_q < 10]
@@ -25,7 +25,7 @@ def functions(scene):
                 yield f, shapes(n_q, n)[name]
 
 
-@pytest.mark.skipif(disabled(), reason="nothing is compiled")
+@compiled_only
 @pytest.mark.parametrize("name", SCENES)
 def test_what_is_built_gives_the_numbers_of_what_is_compiled_to_the_last_bit(name, monkeypatch):
     scene = scenes.CATALOGUE[name].make()
@@ -57,7 +57,7 @@ def functions_with_modes(scene):
     yield from ((surface.value, 1) for surface in scene.system.surfaces)
 
 
-@pytest.mark.skipif(disabled(), reason="nothing is compiled")
+@compiled_only
 @pytest.mark.parametrize("model", ["slip", "constant", "full", None])
 def test_what_is_built_of_systems_with_modes_gives_the_numbers_of_python(model):
     made = [e.make() for n, e in scenes.WITH_MODES.items() if n != "hybrid-abs"]
