@@ -2,10 +2,10 @@
 
 import pytest
 
-from lcpstep.callbacks import disabled
+from tests.marks import compiled_only
 from tests.processes import python
 
-pytestmark = pytest.mark.skipif(disabled(), reason="nothing is compiled")
+pytestmark = compiled_only
 AHEAD_OF_TIME = """
 import sys
 from lagrangian import scenes
