@@ -1,4 +1,4 @@
-"""What is compiled when the package is built: the modules with a `.pxd` file, from the `.py` files beside these.
+"""What is compiled when the package is built: the kernels, with what `declarations` says of them.
 
 python setup.py build_ext --inplace     after a change: compiles what it concerns, in seconds
 """
@@ -28,21 +28,14 @@ HERE = Path(__file__).resolve().parent
 DIGESTS = HERE / "build" / "digests"  # of what lies built beside its source, a file for each module
 SOURCES = "build/sources"  # as Cython reads them
 sys.path.insert(0, str(HERE))
+import declarations  # noqa: E402
+import kernel_sources  # noqa: E402
 import ready  # noqa: E402
 
-HEADERS = {
-    "lcpstep.pointers",
-    "lcpstep.arrays",
-    "lcpstep.kernels.vectors",
-    "lcpstep.kernels.one_row",
-    "lcpstep.stepping.pieces.codes",
-    "lcpstep.kernels.quadratic",
-    "lcpstep.stepping.pieces.times",
-}  # merged into the modules that use them
 DIRECTIVES = {
     "language_level": 3,
     "infer_types": True,  # of local variables, from what they are assigned
-    "annotation_typing": False,  # types of kernels stand in the .pxd; annotations are for readers and mypy
+    "annotation_typing": False,  # `declarations` reads them
     "cdivision": True,
     # Half of what the compiler would have to do: nobody pickles what kernels work in, or asks their Python functions
     # for more than to be called
@@ -85,6 +78,7 @@ class Build(build_ext):
                 sys.exit(NO_COMPILER)
             os.environ["CC"] = f"{sys.executable} -m ziglang cc"
             os.environ["LDSHARED"] = f"{os.environ['CC']} {' '.join(linking())}"
+        write_sources()
         for ext in self.extensions:
             ext.digest = digest(ext)
         translate([ext for ext in self.extensions if self.force or not is_built(ext)])
@@ -128,8 +122,7 @@ def is_built(ext: Module) -> bool:
 
 def digest(ext: Module) -> str:
     """A checksum: of Cython's version, of the options, of a module's source and of what that includes."""
-    tree, source = create_dependency_tree(), ext.sources[0]
-    found = [*tree.all_dependencies(source), *tree.all_dependencies(in_c(source)), *ext.depends]
+    found = [*create_dependency_tree().all_dependencies(in_c(ext.sources[0])), *ext.depends]
     places = HERE / "lcpstep", HERE / "build"
     mine = sorted({HERE / file for file in found if any(map((HERE / file).is_relative_to, places))})
     texts = [file.relative_to(HERE).as_posix().encode() + file.read_bytes() for file in mine]
@@ -139,18 +132,37 @@ def digest(ext: Module) -> str:
 
 def in_c(source: str) -> str:
     """The file that Cython reads in the place of a source: lines are the same, imports those of C (`cimporting`)."""
-    if source.endswith(".pyx"):
-        return source
-    file, text = HERE / SOURCES / source, cimporting((HERE / source).read_text(encoding="utf-8"))
-    if not file.exists() or file.read_text(encoding="utf-8") != text:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
-    return f"{SOURCES}/{source}"
+    return source if source.endswith(".pyx") else f"{SOURCES}/{source}"
+
+
+def write_sources() -> None:
+    """What Cython reads: kernels, and their declarations, as packages of their own."""
+    for name in kernel_sources.kernels(HERE):
+        file = Path(name.replace(".", "/"))
+        put(file.with_suffix(".py"), cimporting((HERE / file).with_suffix(".py").read_text(encoding="utf-8")))
+        put(file.with_suffix(".pxd"), declarations.declarations(HERE, name))
+        for package in list(file.parents)[:-1]:
+            put(package / "__init__.py", "")
+
+
+def put(file: Path, text: str) -> None:
+    """Write a file that Cython reads, if it is another than before."""
+    place = HERE / SOURCES / file
+    if kernel_sources.read(place) != text or not place.exists():
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(text, encoding="utf-8")
 
 
 def cimporting(text: str) -> str:
-    """A kernel in which what it imports for where it is not compiled is cimported."""
+    """A kernel in which what it imports for where it is not compiled is cimported, and nothing is declared again."""
     lines = text.split("\n")
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.ClassDef | ast.FunctionDef) and "cython.ufunc" not in kernel_sources.marks(
+            node
+        ):
+            for mark in node.decorator_list:
+                if ast.unparse(mark) in declarations.DECLARED:
+                    lines[mark.lineno - 1] = ""
     for block in ast.parse(text).body:
         uncompiled = isinstance(block, ast.If) and ast.unparse(block.test) == "not cython.compiled"
         if not uncompiled or not isinstance(block.body[0], ast.ImportFrom):
@@ -176,13 +188,14 @@ def has_compiler() -> bool:
     return True
 
 
-def extension(header: Path) -> Module:
-    """The module of one `.pxd` file."""
-    clones = header.with_suffix(".h")
+def extension(name: str) -> Module:
+    """The module of one kernel."""
+    source = Path(name.replace(".", "/"))
+    clones = (HERE / source).with_suffix(".h")
     cloned = clones.exists() and platform.libc_ver()[0] == "glibc"
     return Module(
-        ".".join(header.relative_to(HERE).with_suffix("").parts),
-        [str(header.relative_to(HERE).with_suffix(".py"))],
+        name,
+        [str(source.with_suffix(".py"))],
         include_dirs=[np.get_include()],
         define_macros=MACROS,
         extra_compile_args=[*OPTIONS, *ROWS, "-include", str(clones)] if cloned else OPTIONS,
@@ -192,8 +205,8 @@ def extension(header: Path) -> Module:
 
 def extensions() -> list[Module]:
     """All compiled modules."""
-    found = [extension(header) for header in sorted(HERE.glob("lcpstep/**/*.pxd"))]
-    return [e for e in found if e.name not in HEADERS] + [functions_of_ready_scenes()]
+    built = [name for name in kernel_sources.kernels(HERE) if name not in kernel_sources.MERGED]
+    return [*map(extension, built), functions_of_ready_scenes()]
 
 
 def functions_of_ready_scenes() -> Module:

@@ -25,7 +25,8 @@ ENVIRONMENT = ROOT / ".venv"
 BIN = ENVIRONMENT / ("Scripts" if os.name == "nt" else "bin")
 LAST = 60  # lines of pip's that are shown where it fails
 OWN_INDEX = re.compile(r"\.(index-url|no-index|proxy)=")  # in what pip says of its configuration
-BUILD = "pyproject.toml", "setup.py", "ready.py", "ready_words.py"
+MADE_BY = "setup.py", "declarations.py", "inference.py", "kernel_sources.py", "ready.py", "ready_words.py"
+BUILD = "pyproject.toml", *MADE_BY
 BESIDE = (["ruff", "check", "."], ["ruff", "format", "--check", "."], ["mypy"], ["lint-imports"])
 
 
@@ -106,8 +107,10 @@ def required(checks: bool) -> list[str]:
 
 def kernels() -> list[str]:
     """Files from which machine code is built."""
-    headers = sorted(ROOT.glob("lcpstep/**/*.pxd")) + sorted(ROOT.glob("lcpstep/**/*.h"))
-    files = {file for header in headers for file in (header, header.with_suffix(".py")) if file.exists()}
+    sources = [
+        file for file in ROOT.glob("lcpstep/**/*.py") if "import cython\n" in file.read_text(encoding="utf-8")
+    ]
+    files = [*sources, *ROOT.glob("lcpstep/**/*.pxd"), *ROOT.glob("lcpstep/**/*.h")]
     return sorted(str(file.relative_to(ROOT)) for file in files)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from lcpstep.pointers import Doubles, Indices
+from lcpstep.pointers import Doubles, Flags, Indices
 
 
 def are_doubles(x: Any, dimensions: int) -> bool:
@@ -24,6 +24,6 @@ def indices(x: Any) -> Indices:
     return x.reshape(-1)
 
 
-def small_numbers(x: Any) -> Any:
+def small_numbers(x: Any) -> Flags:
     """The numbers of a contiguous uint8 array."""
     return x.reshape(-1)

@@ -14,6 +14,7 @@ cdef extern from *:
 # Of a kind's fields several stand in a line so
 ctypedef double* Doubles
 ctypedef Py_ssize_t* Indices
+ctypedef unsigned char* Flags
 
 
 cdef inline double max(double a, double b) noexcept nogil:

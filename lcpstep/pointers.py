@@ -1,8 +1,8 @@
 """What C and Python say differently, said once: kernels use these names, and run compiled and uncompiled.
 
 A kernel takes the numbers of an array from their first on: a pointer once compiled, a flat array before. Matrices lie
-row by row, W[i, j] at W[i * n + j]. The types of kernels stand in the `.pxd` file beside each, read by Cython alone;
-in that of this file the same names are C's, and `abs`, `max` and `min` are those of two doubles.
+row by row, W[i, j] at W[i * n + j]. In the `.pxd` file beside this one the same names are C's; `abs`, `max` and `min`
+are those of two doubles.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ except ImportError as error:
 
 Doubles = NDArray[np.float64]
 Indices = NDArray[np.intp]
+Flags = NDArray[np.uint8]
 abs: Callable[[Any], Any] = builtins.abs
 max: Callable[[Any, Any], Any] = builtins.max
 min: Callable[[Any, Any], Any] = builtins.min

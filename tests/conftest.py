@@ -22,7 +22,8 @@ def pytest_configure(config):
     for name, source in BUILT.items():
         for suffix in importlib.machinery.EXTENSION_SUFFIXES:
             built = source.with_suffix(suffix)
-            newest = max(source.stat().st_mtime, source.with_suffix(".pxd").stat().st_mtime)
+            files = source, source.with_suffix(".pxd")
+            newest = max(file.stat().st_mtime for file in files if file.exists())
             if built.exists() and built.stat().st_mtime < newest:
                 raise pytest.UsageError(
                     f"{name} has changed since it was built: python setup.py build_ext --inplace"

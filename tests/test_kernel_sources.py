@@ -1,17 +1,15 @@
-"""What Python and C read differently, in the sources of kernels; and what a `.pxd` says once more than the `.py`."""
+"""What Python and C read differently, in the sources of kernels; and how these are declared for Cython."""
 
 import ast
 import importlib.util
-import itertools
-import math
 import re
 
-import numpy as np
 import pytest
 
-from lcpstep.kernels import one_row, quadratic, vectors
-from lcpstep.stepping.pieces import codes, times
-from tests.uncompiled import BUILT, HEADERS, ROOT
+import declarations
+import kernel_sources
+from lcpstep.stepping.pieces import codes
+from tests.uncompiled import BUILT, ROOT
 
 
 def whole(node, integers):
@@ -79,58 +77,212 @@ def test_what_a_kernel_imports_is_cimported_on_the_line_on_which_it_stood():
     assert setup.cimporting(source).split("\n") == [*read, "if not cython.compiled:", "    ONE = [0.0]", ""]
 
 
-@pytest.mark.parametrize("name", sorted(BUILT))
-def test_a_header_cimports_what_it_names_and_no_more(name):
-    lines = header(name).split("\n")
-    cimports = [re.match(r"from \S+ cimport (.+)", line) for line in lines]
-    rest = "\n".join(line for line in lines if " cimport " not in line)
-    names = [x.split()[-1] for found in cimports if found for x in found[1].split(",")]
-    assert [x for x in names if not re.search(rf"\b{x}\b", rest)] == []
+@pytest.mark.parametrize("mark", ["cython.ccall", "cython.cfunc", "cython.final"])
+def test_what_is_declared_is_not_said_to_cython_again(mark):
+    source = f"import cython\n\n@{mark}\ndef f(x: float) -> float:\n    return x\n"
+    assert setup_module_of_project().cimporting(source) == source.replace(f"@{mark}", "")
+    numpys = "@cython.ufunc\n@cython.cfunc\ndef f(x: cython.double) -> cython.double:\n    return x\n"
+    assert setup_module_of_project().cimporting(numpys) == numpys
 
 
-# --- modules that are merged into others: their functions are written in both files ------------------------------
+# --- what is declared: types from annotations, and from what is assigned -----------------------------------------
 
-INLINE = re.compile(r"cdef inline (?:\w+\*? )+(\w+)\((.*)\) noexcept(?: nogil)?:")
+STATE = """import cython
+
+ROUNDS, LEAST = 3, 1e-9
+
+
+class Base:
+    def size(self) -> float:
+        return 1.0
+
+
+class State(Base):
+    def __init__(self, n: int) -> None:
+        self.n = n
+
+    def open(self, c: int) -> bool:
+        return self.g[c] > 0.0
+
+    def names(self) -> list[str]:
+        return []
+"""
+FIELDS = """cdef class Base:
+    cdef readonly double h
+
+cdef class State(Base):
+    cdef public Py_ssize_t n
+    cdef Doubles g
+    cdef Indices mode
+"""
+KERNEL = """import cython
+
+from lcpstep.state import LEAST, ROUNDS
+
+if not cython.compiled:
+    from lcpstep.pointers import Doubles, abs
+    from lcpstep.state import State
+"""
+
+
+def declared(folder, source, name="kernel"):
+    """The lines that declare a kernel which takes `State` from another one."""
+    (folder / "lcpstep").mkdir(exist_ok=True)
+    for file, text in (("state.py", STATE), ("state.pxd", FIELDS), (f"{name}.py", source)):
+        (folder / "lcpstep" / file).write_text(text)
+    return declarations.declarations(folder, f"lcpstep.{name}").splitlines()
+
+
+def types(folder, body):
+    """The types of the variables of a kernel f(s: State, x: Doubles, n: int)."""
+    source = f"{KERNEL}\n\ndef pair(x: Doubles) -> tuple[int, float]:\n    return 0, x[0]\n\n\n"
+    source += "def f(s: State, x: Doubles, n: int) -> None:\n" + "".join(f"    {line}\n" for line in body)
+    lines = declared(folder, source)
+    place = lines.index("cdef void f(State s, Doubles x, Py_ssize_t n) noexcept nogil")
+    told = re.match(r"@cython.locals\((.*)\)", lines[place - 1])
+    return dict(x.split("=") for x in told[1].split(", ")) if told else {}
+
+
+def test_functions_are_declared_by_their_annotations(tmp_path):
+    source = (
+        KERNEL
+        + """
+
+def f(s: State, x: Doubles, c: int, t: float) -> tuple[int, bool]:
+    return c, t > 0.0
+
+
+@cython.ccall
+def g(s: State, given: Any, least: float = 0.0) -> Any:
+    return given
+
+
+@cython.cfunc
+def h(given: Any) -> float:
+    return LEAST
+
+
+@cython.ccall
+@cython.nogil
+def k(s: State) -> bool:
+    return s.open(0)
+
+
+def of_python(given: Any) -> int:
+    return ROUNDS
+"""
+    )
+    assert declared(tmp_path, source) == [
+        "cimport cython",
+        "from lcpstep.pointers cimport Doubles",
+        "from lcpstep.state cimport State",
+        "cdef double LEAST",
+        "cdef Py_ssize_t ROUNDS",
+        "cdef (Py_ssize_t, bint) f(State s, Doubles x, Py_ssize_t c, double t) noexcept nogil",
+        "cpdef object g(State s, object given, double least=*)",
+        "cdef double h(object given) noexcept",
+        "cpdef bint k(State s) noexcept nogil",
+    ]
+
+
+def test_methods_stand_with_the_fields_of_their_class(tmp_path):
+    lines = declared(tmp_path, KERNEL, "other") and declarations.declarations(tmp_path, "lcpstep.state")
+    begin = lines.index("cdef class Base:")
+    assert lines[begin:].splitlines() == [
+        "cdef class Base:",
+        "    cdef readonly double h",
+        "    cdef double size(self) noexcept nogil",
+        "",
+        "cdef class State(Base):",
+        "    cdef public Py_ssize_t n",
+        "    cdef Doubles g",
+        "    cdef Indices mode",
+        "    cdef bint open(self, Py_ssize_t c) noexcept nogil",
+    ]
+
+
+def test_a_class_without_relatives_is_final(tmp_path):
+    (tmp_path / "lcpstep").mkdir()
+    (tmp_path / "lcpstep" / "alone.pxd").write_text("cdef class Alone:\n    cdef double x\n")
+    lines = declared(tmp_path, "import cython\n\n\nclass Alone:\n    pass\n", "alone")
+    assert lines == ["cimport cython", "@cython.final", "cdef class Alone:", "    cdef double x"]
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        (["found, most = False, 1.0"], {"found": "bint", "most": "double"}),
+        (["c = s.mode[n] + 2", "u = s.g[c]"], {"c": "Py_ssize_t", "u": "double"}),
+        (["k, y = pair(x)"], {"k": "Py_ssize_t", "y": "double"}),
+        (["is_open = s.open(n) and not n == 2"], {"is_open": "bint"}),
+        (["size = s.size() if s.h > 0.0 else 0"], {"size": "double"}),  # of the class it is derived from
+        (["for c in range(n):", "    x[c] = 0.0"], {"c": "Py_ssize_t"}),
+        (["total = 0", "total += x[0]"], {"total": "double"}),
+        (["a = 0.0", "b = a", "a = b * n"], {"a": "double", "b": "double"}),
+        (["share = n / 2", "whole = n // 2"], {"share": "double", "whole": "Py_ssize_t"}),
+        (["most = ROUNDS if n > 0 else LEAST"], {"most": "double"}),
+        (["off: float = unknown(x)"], {"off": "double"}),
+        (["off = unknown(x)", "again = off"], {}),
+        (["y = x"], {}),  # pointers are left to Cython
+        (["m = 1", "m = unknown(x)"], {}),
+    ],
+)
+def test_variables_are_what_is_assigned_to_them(tmp_path, body, expected):
+    assert types(tmp_path, body) == expected
+
+
+def test_what_is_merged_into_others_is_declared_with_its_body(tmp_path, monkeypatch):
+    monkeypatch.setattr(declarations, "MERGED", {"lcpstep.short"})
+    source = (
+        KERNEL
+        + """
+
+def total(x: Doubles, n: int) -> float:
+    \"\"\"Sum.\"\"\"
+    s = 0.0
+    for i in range(n):
+        s += abs(x[i])
+    return s
+"""
+    )
+    lines = declared(tmp_path, source, "short")
+    assert lines[:3] == [
+        "cimport cython",
+        *[f"from lcpstep.pointers cimport {x}" for x in ("Doubles", "abs")],
+    ]
+    assert lines[lines.index("cdef inline double total(Doubles x, Py_ssize_t n) noexcept nogil:") + 1 :] == [
+        *("    cdef double s", "    cdef Py_ssize_t i", "    s = 0.0", "    for i in range(n):"),
+        *("        s += abs(x[i])", "    return s", ""),
+    ]
+
+
+@pytest.mark.parametrize("name", sorted(set(BUILT) - kernel_sources.IN_C))
+def test_every_variable_of_a_kernel_is_a_number_or_a_kind_of_kernels(name):
+    """A function with a word that is no type would be Python's in silence, and slow."""
+    k = kernel_sources.Kernel(ROOT.parent, name)
+    for f in k.functions.values():
+        kinds = [k.type_of(argument.annotation) for argument in f.args.args]
+        if any(kind in ("Doubles", "Indices", "Flags") for kind in kinds):
+            assert None not in kinds, f.name
+
+
+# --- what C says by itself: `lcpstep/pointers.pxd` and others ----------------------------------------------------
+
+INLINE = re.compile(r"cdef inline (?:\w+ )*(?:\w+\*? )(\w+)\((.*)\) noexcept(?: nogil)?:")
 NUMBER = re.compile(r"(?:[:,]|double) ([A-Z_]+) (?:= (-?\d+)|\"(.+)\")")
-VALUES = [0.0, -0.0, 1.0, -1.0, 0.3, -0.7, 2.5e3, -1e-300, math.inf, -math.inf, math.nan]
-IN_C = {"pointers": {"abs", "max", "min", "bits", "double_of"}}  # C's own; "max(a, b)" has no other arguments
 
 
 def header(name):
     return BUILT[name].with_suffix(".pxd").read_text()
 
 
-def arguments_in_c(name):
-    """Names of the arguments of each function of a `.pxd` file."""
-    found = dict(INLINE.findall(header(name)))
-    return {f: [re.split(r"[ *]+", x.strip())[-1] for x in given.split(",")] for f, given in found.items()}
-
-
-def arguments_in_python(name):
-    functions = [
-        node for node in ast.parse(BUILT[name].read_text()).body if isinstance(node, ast.FunctionDef)
-    ]
-    return {f.name: [x.arg for x in f.args.args] for f in functions}
-
-
-def as_python(name):
-    """The functions of a `.pxd` file, which are Python but for their types."""
-    text = INLINE.sub(lambda m: f"def {m[1]}({', '.join(arguments_in_c(name)[m[1]])}):", header(name))
-    text = re.sub(r"^(from .* cimport .*|)$", "", text, flags=re.M)
-    text = re.sub(r"cdef (?:double|Py_ssize_t) (\w+ =)", r"\1", text)
-    known = {"sqrt": math.sqrt, "abs": abs, "max": max, "min": min, "inf": math.inf, "range": range}
-    known |= {x: getattr(codes, x) for x in ("EPS", "LATE")}
-    exec(text, known)
-    return known
-
-
-@pytest.mark.parametrize("name", sorted(HEADERS))
-def test_functions_have_the_same_arguments_in_both_files(name):
-    own = IN_C.get(name.rpartition(".")[2], set())
-    in_c, in_python = arguments_in_c(name), arguments_in_python(name)
-    assert {f: x for f, x in in_c.items() if f not in own} == {
-        f: x for f, x in in_python.items() if f not in own
-    }
+@pytest.mark.parametrize("name", sorted(kernel_sources.IN_C))
+def test_functions_of_c_have_the_arguments_of_pythons(name):
+    functions = kernel_sources.Kernel(ROOT.parent, name).functions
+    for f, given in INLINE.findall(header(name)):
+        if f in functions:  # `max` and `min` are Python's own
+            own = [re.split(r"[ *]+", x.strip())[-1] for x in given.split(",")]
+            assert own == [argument.arg for argument in functions[f].args.args]
 
 
 def test_numbers_of_located_are_the_same_in_both_files():
@@ -140,65 +292,3 @@ def test_numbers_of_located_are_the_same_in_both_files():
     }
     names = {name for name in vars(codes) if name.isupper()}
     assert found == {name: getattr(codes, name) for name in names}
-
-
-def same(a, b):
-    return a == b or (math.isnan(a) and math.isnan(b))
-
-
-@pytest.mark.parametrize("f", [quadratic.first_zero, quadratic.may_reach_zero])
-def test_quadratics_are_the_same_in_both_files(f):
-    other = as_python(quadratic.__name__)[f.__name__]
-    n = len(arguments_in_python(quadratic.__name__)[f.__name__])
-    finite = [x for x in VALUES if math.isfinite(x)]
-    for given in itertools.product(finite, repeat=n):
-        assert same(f(*given), other(*given)), given
-
-
-@pytest.mark.parametrize("name", sorted(arguments_in_python(vectors.__name__)))
-def test_short_loops_are_the_same_in_both_files(name):
-    rng = np.random.default_rng(4)
-    for size, factor in itertools.product((0, 1, 5), VALUES):
-        given = {"n": size, "c": 1, "factor": factor, "least": abs(factor)}
-        given |= {x: rng.normal(size=2 * size) for x in ("x", "y", "v")} | {"G": rng.normal(size=2 * size)}
-        answers = []
-        for f in (getattr(vectors, name), as_python(vectors.__name__)[name]):
-            arrays = {k: x.copy() if isinstance(x, np.ndarray) else x for k, x in given.items()}
-            arguments = [arrays[k] for k in arguments_in_python(vectors.__name__)[name]]
-            with np.errstate(invalid="ignore"):
-                answers.append([f(*arguments), *arguments])
-        for mine, other in zip(*answers, strict=True):
-            np.testing.assert_array_equal(mine, other)
-
-
-class Written:
-    """What a record has written: two rows, and one that is to come."""
-
-    def __init__(self):
-        self.row, self.t, self.q, self.v = 2, np.ones(3), np.ones(3), np.ones(3)
-        self.length, self.impulse = np.zeros(3), np.zeros(3)
-
-
-@pytest.mark.parametrize("x", VALUES)
-def test_a_kept_state_is_the_same_in_both_files(x):
-    answers = []
-    for f in (one_row.keep_one, as_python(one_row.__name__)["keep_one"]):
-        record, impulse = Written(), np.array([x])
-        f(record, x, x, 2.0 * x, 3.0 * x, impulse)
-        answers.append([*vars(record).values(), impulse])
-    for mine, other in zip(*answers, strict=True):
-        np.testing.assert_array_equal(mine, other)
-
-
-class Piece:
-    """A plan, and the work at hand."""
-
-    h, margin, plain, low, high = 0.1, 1e-9, False, 0.2, 0.7
-
-
-@pytest.mark.parametrize("t", [-1.0, 0.0, 0.2, 0.2 + 1e-9, 0.5, 0.7 - 2e-9, 0.7 - 1e-10, 0.7, 1e9])
-def test_times_are_the_same_in_both_files(t):
-    piece, other = Piece(), as_python(times.__name__)
-    assert times.within(piece, t) == other["within"](piece, t)
-    assert times.at_corner(piece, piece, t) == other["at_corner"](piece, piece, t)
-    assert times.just_after(piece, t) == other["just_after"](piece, t)

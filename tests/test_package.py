@@ -152,7 +152,7 @@ def test_packages_come_by_pip_where_uv_fails(tmp_path, monkeypatch):
 @pytest.mark.slow
 def test_nothing_is_translated_to_tell_what_the_package_needs(tmp_path):
     """pip and build ask for it several times, each time in a process of its own."""
-    for name in ("setup.py", "ready.py", "ready_words.py", "pyproject.toml", "README.md", "LICENSE"):
+    for name in (*start.MADE_BY, "pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, tmp_path)
     shutil.copytree(ROOT / "lagrangian", tmp_path / "lagrangian")
     (tmp_path / "lcpstep").mkdir()
@@ -199,7 +199,7 @@ def the_archive_has_every_source_and_the_wheel_every_module(archive, wheel):
     files = {str(f.relative_to(ROOT)) for f in packages if f.suffix in (".py", ".pxd", ".h", ".typed")}
     assert files <= sources
     assert files <= modules
-    assert {"setup.py", "ready.py", "ready_words.py", "start.py", "LICENSE", "CHANGELOG.md"} <= sources
+    assert {*start.MADE_BY, "start.py", "LICENSE", "CHANGELOG.md"} <= sources
     compiled = {str(f.relative_to(ROOT)) for f in packages if f.suffix in (".so", ".pyd")}
     assert compiled
     assert compiled <= modules

@@ -1,6 +1,5 @@
 """The library's own sources in the place of what is built from them."""
 
-import ast
 import importlib
 import importlib.util
 import shutil
@@ -12,15 +11,10 @@ import lcpstep
 from tests.processes import python
 
 ROOT = Path(lcpstep.__file__).parent
-BUILT = {
-    ".".join(("lcpstep", *header.relative_to(ROOT).with_suffix("").parts)): header.with_suffix(".py")
-    for header in ROOT.rglob("*.pxd")
-}
-HEADERS = next(  # those that are merged into others
-    ast.literal_eval(node.value)
-    for node in ast.parse((ROOT.parent / "setup.py").read_text()).body
-    if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "HEADERS"
-)
+sys.path.insert(0, str(ROOT.parent))  # where what builds it lies
+kernel_sources = importlib.import_module("kernel_sources")
+MERGED = kernel_sources.MERGED  # into others
+BUILT = {name: ROOT.parent / f"{name.replace('.', '/')}.py" for name in kernel_sources.kernels(ROOT.parent)}
 
 
 class Sources:

@@ -69,6 +69,7 @@ def tree(x: Any, y: Any) -> tuple[Any, int]:
     return boxes, leaves
 
 
+@cython.ccall
 def hausdorff(a: Graph, b: Graph, least: float = 0.0) -> float:
     """Hausdorff distance of two polylines, or `least` where they are nearer: then all is settled at a glance."""
     nodes, pieces = np.zeros(DEPTH, dtype=np.intp), np.zeros(4 * DEPTH)

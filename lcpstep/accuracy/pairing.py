@@ -9,7 +9,7 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices, small_numbers
-    from lcpstep.pointers import Doubles, Indices, abs
+    from lcpstep.pointers import Doubles, Flags, Indices, abs
 
 NEITHER, PAIR, SKIP = 0, 1, 2  # where a cell's value comes from: drop a's last, pair both, drop b's last
 
@@ -39,7 +39,7 @@ def fill_partners(
     low: Indices,
     high: Indices,
     cells: Indices,
-    origin: Any,
+    origin: Flags,
     row: Doubles,
     before: Doubles,
     partner: Indices,

@@ -125,6 +125,7 @@ def packed(table: Any) -> Any:
     return np.stack([-lo[..., 0], -lo[..., 1], -low, hi[..., 0], high, rough, kicks], axis=2)
 
 
+@cython.cfunc
 def together(own: Any) -> Any:
     """The same of 1, 2, 4, ... neighbours: the largest of all but the kicks, and the sums of these."""
     found = np.empty((len(own).bit_length(), *own.shape))

@@ -15,7 +15,7 @@ if not cython.compiled:
     from lcpstep.audit.cells import Cells
     from lcpstep.audit.clear import Gap, between_corners, late, open_between
     from lcpstep.kernels.function import Function
-    from lcpstep.pointers import Doubles, Indices, abs, after, indices_after, inf, max, min
+    from lcpstep.pointers import Doubles, Flags, Indices, abs, after, indices_after, inf, max, min
 
 ROUNDING = 1.1e-13  # of the numbers that a gap is made of
 SECOND = 1e-15  # of them, times how large the second differences' factor is
@@ -71,6 +71,7 @@ def differences(g: Curve, size: float) -> None:
         g.fourth += 4.0 * factor * g.loose
 
 
+@cython.ccall
 def clear_curves(
     g: Curve, t: Any, B: Any, G: Any, offset: Any, obstacle: Any, absolute: Any, relative: float,
     drift: Any, touched: Any, skipped: Any, cuts: Any, found: Any,
@@ -136,7 +137,7 @@ def clear_curves(
                 out[k * n_c + c] = 1 if good else 0
 
 
-def later(t: Doubles, touched: Any, k: int, n: int, n_c: int, c: int, found: float) -> float:
+def later(t: Doubles, touched: Flags, k: int, n: int, n_c: int, c: int, found: float) -> float:
     """The time of the first event of contact c at state k or after it; infinite if there is none.
 
     found : what an earlier state was told
@@ -148,6 +149,7 @@ def later(t: Doubles, touched: Any, k: int, n: int, n_c: int, c: int, found: flo
     return t[k] if k <= n else inf
 
 
+@cython.cfunc
 def used(G: Any) -> tuple[Any, Any]:
     """The columns in which rows of G are not zero, (n_c, n_q) with the rest behind them, and how many, (n_c,)."""
     columns = np.argsort(G == 0.0, axis=1, kind="stable").astype(np.intp)
@@ -195,6 +197,7 @@ def at_once(g: Curve, c: int, t: float, size: float, s: float, s_b: float, whole
     return open_between(g_a, g_b, g.length, low, high, kick, g.first, g.last, g.error)
 
 
+@cython.ccall
 def interpolate(t: Any, q: Any, v: Any, inner: Any, begin: Any, inverse: Any, B: Any) -> None:
     """Coefficients B (m, k + 3, n_q) through states t, q, v (m + 1, ..) and k inner positions: `polynomials.through`.
 
@@ -224,6 +227,7 @@ def interpolate(t: Any, q: Any, v: Any, inner: Any, begin: Any, inverse: Any, B:
                     coefficients[(r + 2) * n_q] = x
 
 
+@cython.ccall
 def hulls(B: Any, group: int, lo: Any, hi: Any) -> None:
     """The smallest and largest coefficients of groups of pieces, (groups, n_q): bounds of the motion there."""
     n, width, n_q = len(B), B.shape[1], B.shape[2]

@@ -6,8 +6,7 @@ from typing import Any
 
 import cython
 
-from lcpstep.audit.limits import ERRORS, PRESSED, SLACK, UNKNOWN
-from lcpstep.audit.limits import ROUNDED as ROUNDING
+from lcpstep.audit.limits import ERRORS, PRESSED, ROUNDED, SLACK, UNKNOWN
 
 if not cython.compiled:
     from math import sqrt
@@ -33,6 +32,7 @@ BEFORE = 0.5  # of how long an event lasts: windows of closed contacts end so lo
 HALF_TURN = 3.0  # rad, and less than that
 
 
+@cython.ccall
 def clear_flights(g: Swing, t: Any, q: Any, v: Any, touched: Any, kind: Any, cuts: Any, found: Any) -> None:
     """Which pieces are certified, (m,), into `found`; called from Python.
 
@@ -84,7 +84,7 @@ def at_once(g: Swing, o: Flight, t: float, t_b: float, q: Doubles, v: Doubles, w
     """
     begin, end, g.rate = o.offset + o.G * q[0], o.offset + o.G * q[1], o.G * v[0]
     note_error(g, o, t, t_b, q[0], v[0])
-    g.low, g.high, g.met = g.middle - g.bound, g.middle + g.bound, ROUNDING * g.cells.whole_size[0]
+    g.low, g.high, g.met = g.middle - g.bound, g.middle + g.bound, ROUNDED * g.cells.whole_size[0]
     g.begin_gap, g.end_gap = begin, end
     low, high, kick = g.cells.whole_low[0], g.cells.whole_high[0], g.cells.whole_kick[0]
     even = whole and not g.cells.whole_rough
@@ -97,7 +97,7 @@ def at_once(g: Swing, o: Flight, t: float, t_b: float, q: Doubles, v: Doubles, w
     if plain and parts_at_ends(g, begin, end, g.rate, g.low, g.high) and above(g, t, g.high, 0):
         return True
     g.cells.find(0, t, t_b)
-    g.met = ROUNDING * max(abs(g.cells.bottom), abs(g.cells.top))
+    g.met = ROUNDED * max(abs(g.cells.bottom), abs(g.cells.top))
     if lowest - g.met > g.cells.top:
         return True
     if not g.alone:
@@ -122,7 +122,7 @@ def note_error(g: Swing, o: Flight, t: float, t_b: float, q: float, v: float) ->
     if not g.swings:
         g.stand(t, q, v)
         size = abs(g.y) + abs(g.w) * g.length + 0.5 * abs(o.f0) * g.length * g.length + g.forced
-    g.error = ROUNDING * (abs(o.G) * (size + abs(q)) + abs(o.offset)) + late(max(abs(t), abs(t_b)), g.fast)
+    g.error = ROUNDED * (abs(o.G) * (size + abs(q)) + abs(o.offset)) + late(max(abs(t), abs(t_b)), g.fast)
 
 
 def lowest_place(g: Swing, o: Flight, least: float) -> float:

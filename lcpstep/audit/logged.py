@@ -11,12 +11,13 @@ from lcpstep.trajectory import Kind
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.pointers import Doubles, inf, min, whole
+    from lcpstep.pointers import Doubles, Flags, inf, min, whole
 
 IMPACT, STICK = float(Kind.IMPACT), float(Kind.STICK)
 ACCUMULATION, RELEASE = float(Kind.ACCUMULATION), float(Kind.RELEASE)
 
 
+@cython.ccall
 def mark(t: Any, time: Any, contact: Any, kind: Any, touched: Any, between: Any) -> None:
     """Mark states (m + 1, n_c) at which a contact has an event, and pieces (m,) within which an impact lies.
 
@@ -39,6 +40,7 @@ def mark(t: Any, time: Any, contact: Any, kind: Any, touched: Any, between: Any)
                 unknown[last if last < n - 2 else n - 2] = 1
 
 
+@cython.ccall
 def close(t: Any, time: Any, contact: Any, kind: Any, rate: Any, closed: Any) -> None:
     """Mark pieces (m, n_c) in which a contact is closed: from sticking, or the last impact of a series, to a release.
 
@@ -66,7 +68,7 @@ def close(t: Any, time: Any, contact: Any, kind: Any, rate: Any, closed: Any) ->
             between(at, n, n_c, c, since[c], inf, marks)
 
 
-def between(t: Doubles, n: int, n_c: int, c: int, start: float, end: float, marks: Any) -> None:
+def between(t: Doubles, n: int, n_c: int, c: int, start: float, end: float, marks: Flags) -> None:
     """Mark the pieces of contact c whose middles lie between two times, and that in which the contact opens: steps
     hold it to their end.
     """

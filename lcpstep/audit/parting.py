@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.audit.limits import ROUNDED as ROUNDING
-from lcpstep.audit.limits import SLACK
+from lcpstep.audit.limits import ROUNDED, SLACK
 
 if not cython.compiled:
     from lcpstep.audit.clear import rise
@@ -81,7 +80,7 @@ def above(g: Swing, t: float, high: float, most: int) -> bool:
     if length <= 0.0:
         return True
     slope, bent = (g.end_above - g.begin_above) / length, 0.5 * high
-    least = min(g.begin_above, g.end_above) - g.error - ROUNDING * g.cells.whole_size[0]
+    least = min(g.begin_above, g.end_above) - g.error - ROUNDED * g.cells.whole_size[0]
     if least - 0.25 * max(bent, 0.0) * length * length > g.cells.whole_top[0]:
         return True
     if most == 0:
@@ -90,7 +89,7 @@ def above(g: Swing, t: float, high: float, most: int) -> bool:
     g.times[0] = length
     while n > 0:
         y = g.times[n - 1]
-        lowest = g.begin_above - g.error - ROUNDING * g.cells.whole_size[0] + min(slope * x, slope * y)
+        lowest = g.begin_above - g.error - ROUNDED * g.cells.whole_size[0] + min(slope * x, slope * y)
         at_x, at_y = x * (length - x), y * (length - y)
         if bent < 0.0:
             lowest -= bent * min(at_x, at_y)

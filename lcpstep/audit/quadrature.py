@@ -14,6 +14,7 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after, max, nan
 
 
+@cython.ccall
 def errors(
     m: Model, t: Any, B: Any, v: Any, jumps: Any, weights: Any, nodes: Any, noise: float, place: Any, speed: Any,
     within: Any,

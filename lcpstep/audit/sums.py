@@ -10,9 +10,10 @@ from lcpstep.audit.limits import JUMP, RELEASED
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.pointers import Doubles, abs, inf, max, min
+    from lcpstep.pointers import Doubles, Flags, abs, inf, max, min
 
 
+@cython.ccall
 def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size: Any) -> None:
     """How accelerations change from piece to piece, and how that changes: the largest of a piece and its neighbours.
 
@@ -49,7 +50,7 @@ def changes(t: Any, v: Any, jumps: Any, cuts: Any, first: Any, second: Any, size
         beside(two, n, n_q, 1.0, jump)
 
 
-def beside(x: Doubles, n: int, n_q: int, share: float, jump: Any) -> None:
+def beside(x: Doubles, n: int, n_q: int, share: float, jump: Flags) -> None:
     """The largest of each piece and its neighbours of the same motion, (n, n_q), times a share, in its place."""
     for j in range(n_q):
         before = 0.0
@@ -61,6 +62,7 @@ def beside(x: Doubles, n: int, n_q: int, share: float, jump: Any) -> None:
             before = own
 
 
+@cython.ccall
 def add_up(t: Any, jumps: Any, place: Any, speed: Any, rate: Any, gone: Any) -> None:
     """How far the positions may be off in each piece, (m, n_q), into `gone`; see `drift`.
 
@@ -83,6 +85,7 @@ def add_up(t: Any, jumps: Any, place: Any, speed: Any, rate: Any, gone: Any) -> 
                 out[k * n_q + j] = off + (min(moved, fast / held[j]) if held[j] > 0.0 else moved)
 
 
+@cython.ccall
 def missed(t: Any, q: Any, v: Any, jumps: Any, out: Any) -> None:
     """How far the parabolas between states may be from the motion, (m, n_q): half of what their velocities miss."""
     n, n_q = len(out), q.shape[1]

@@ -69,6 +69,7 @@ class Advance:
         self.next = self.rows = self.events = self.steps = 0
         self.t0 = self.late0 = self.late = self.A = self.B = self.x = self.y = self.bound = 0.0
 
+    @cython.ccall
     def go_on(self) -> int:
         """Events up to the end of the span, or until the log is full; called from Python."""
         self.rows = 0

@@ -61,6 +61,7 @@ def matched(a: Log, b: Log, contact: int, weak: float, resolution: float) -> tup
     )
 
 
+@cython.cfunc
 def join(
     log: Log, contact: int, resolution: float, blows: Doubles, noted: bool, rows: Indices, begins: Indices
 ) -> int:
@@ -96,6 +97,7 @@ def room(n: int, blows: Doubles, k: int, resolution: float) -> float:
     return NEAR * min(before, following) + resolution
 
 
+@cython.cfunc
 def pair_blows(
     n: int, a: Doubles, m: int, b: Doubles, resolution: float, pairs: Indices, alone: Indices
 ) -> int:
@@ -117,6 +119,7 @@ def pair_blows(
     return count
 
 
+@cython.cfunc
 def write_matched(
     k: int, a: Doubles, b: Doubles, pairs: Indices, numbers: Doubles, rows: Indices, begins: Indices, many: Indices
 ) -> int:  # fmt: skip
@@ -137,6 +140,7 @@ def write_matched(
     return count
 
 
+@cython.cfunc
 def suspect(
     k: int, numbers: Doubles, a: Doubles, b: Doubles, pairs: Indices, left: int, alone: Indices, weak: float,
     doubts: Doubles,

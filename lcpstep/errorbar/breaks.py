@@ -26,6 +26,7 @@ def increasing(*parts: Any, low: float = -math.inf, high: float = math.inf) -> A
     return found[: keep_once(count, times, low, high)]
 
 
+@cython.cfunc
 def keep_once(count: int, times: Doubles, low: float, high: float) -> int:
     """Move different times within bounds to the front, of times in their order: how many there are."""
     with cython.nogil:
@@ -50,6 +51,7 @@ def spread(start: float, end: float, n: int, some: Any, halvings: int) -> Any:
     return found
 
 
+@cython.cfunc
 def fill(start: float, end: float, n: int, some: Doubles, ends: int, halvings: int, out: Doubles) -> None:
     """Kernel of `spread`."""
     with cython.nogil:
@@ -74,6 +76,7 @@ def with_nodes(t: Any) -> Any:
     return found
 
 
+@cython.cfunc
 def put_nodes(n: int, t: Doubles, out: Doubles) -> None:
     """Kernel of `with_nodes`."""
     with cython.nogil:
@@ -90,6 +93,7 @@ def close(t: Any, least: float) -> Any:
     return found[: find_close(n, times, least, out)]
 
 
+@cython.cfunc
 def find_close(n: int, t: Doubles, least: float, out: Doubles) -> int:
     """Kernel of `close`."""
     with cython.nogil:

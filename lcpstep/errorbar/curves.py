@@ -12,7 +12,7 @@ import numpy as np
 
 if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min
+    from lcpstep.pointers import Doubles, Flags, abs, after, inf, max, min
 
 ROUNDING = 4.0  # last digits of what a number is made of
 EPS = 2.220446049250313e-16
@@ -59,6 +59,7 @@ def curves(
     return largest, integral, floor, 0.5 * width
 
 
+@cython.cfunc
 def find_differences(
     n: int, count: int, q: Doubles, v: Doubles, e: Doubles, q2: Doubles, v2: Doubles, e2: Doubles, out: Doubles
 ) -> None:  # fmt: skip
@@ -71,6 +72,7 @@ def find_differences(
             row[2 * n] = abs(e[k] - e2[k])
 
 
+@cython.cfunc
 def find_floor(
     n: int, count: int, q: Doubles, v: Doubles, e: Doubles, latest: float, work: Doubles, out: Doubles
 ) -> float:
@@ -94,7 +96,7 @@ def find_floor(
 
 
 def find_largest(
-    n: int, count: int, stride: int, apart: Doubles, left_out: Any, floor: Doubles, most: Doubles, out: Doubles
+    n: int, count: int, stride: int, apart: Doubles, left_out: Flags, floor: Doubles, most: Doubles, out: Doubles
 ) -> None:  # fmt: skip
     """The largest distance until each break, no lower than the floor."""
     with cython.nogil:
@@ -111,7 +113,7 @@ def find_largest(
                     out[k // stride * size + i] = most[i] + floor[i]
 
 
-def cover(n: int, count: int, hidden: Any, apart: Doubles) -> None:
+def cover(n: int, count: int, hidden: Flags, apart: Doubles) -> None:
     """Velocities and energies of hidden times become those of the last time before; of the first, at the start."""
     with cython.nogil:
         size, last = 2 * n + 1, 0
@@ -127,6 +129,7 @@ def cover(n: int, count: int, hidden: Any, apart: Doubles) -> None:
                     apart[k * size + i] = apart[last * size + i]
 
 
+@cython.cfunc
 def integrate(n: int, size: int, stride: int, t: Doubles, apart: Doubles, out: Doubles) -> None:
     """Integrals up to each break: by the two nodes before it, or by the breaks where there are none."""
     with cython.nogil:
@@ -139,6 +142,7 @@ def integrate(n: int, size: int, stride: int, t: Doubles, apart: Doubles, out: D
                 out[(k + 1) * size + i] = out[k * size + i] + (t[k + 1] - t[k]) * (0.5 * (a[i] + b[i]))
 
 
+@cython.cfunc
 def even_out(
     n: int, size: int, stride: int, t: Doubles, apart: Doubles, n_even: int, even: Doubles, work: Doubles,
     out: Doubles,
@@ -162,6 +166,7 @@ def even_out(
                 out[k * size + i] += added[i]
 
 
+@cython.cfunc
 def add_floor(n: int, size: int, t: Doubles, floor: Doubles, out: Doubles) -> None:
     """No integral is below that of the floor."""
     with cython.nogil:
@@ -177,6 +182,7 @@ def merged(windows: Any, around: float) -> Any:
     return found[: merge(count, some, around)]
 
 
+@cython.cfunc
 def merge(count: int, windows: Doubles, around: float) -> int:
     """Kernel of `merged`, in place: how many are left."""
     with cython.nogil:
@@ -199,7 +205,7 @@ def within(intervals: Any, t: Any) -> Any:
     return found
 
 
-def find_within(count: int, intervals: Doubles, n: int, t: Doubles, out: Any) -> None:
+def find_within(count: int, intervals: Doubles, n: int, t: Doubles, out: Flags) -> None:
     """Kernel of `within`."""
     with cython.nogil:
         k = 0
@@ -217,7 +223,7 @@ def looked_into(intervals: Any, times: Any, most: int) -> Any:
     return found
 
 
-def find_looks(count: int, intervals: Doubles, n: int, t: Doubles, most: int, out: Any) -> None:
+def find_looks(count: int, intervals: Doubles, n: int, t: Doubles, most: int, out: Flags) -> None:
     """Kernel of `looked_into`: times from a beginning on, before the end."""
     with cython.nogil:
         first = 0

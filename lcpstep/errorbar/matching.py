@@ -36,6 +36,7 @@ class Log:
         return self.kind[k] == IMPACT and self.time[k] <= self.end
 
 
+@cython.ccall
 def summary(a: Log, b: Log) -> tuple[int, float, bool]:
     """One more than the largest number of a contact, the largest jump of an impact, whether chattering ends."""
     most, other = most_contacts(a), most_contacts(b)
@@ -83,6 +84,7 @@ def paired(a: Log, b: Log, most: int) -> tuple[Any, Any, Any]:
     return found[:n], good, late[:n]
 
 
+@cython.cfunc
 def find_pairs(a: Log, b: Log, most: int, rows: Indices, good: Indices, work: Indices, late: Doubles) -> int:
     """Kernel of `paired`."""
     with cython.nogil:
@@ -140,6 +142,7 @@ def without_doubt(
     return found[:n], own[:n], np.flatnonzero(good == 0)
 
 
+@cython.cfunc
 def mark(
     a: Log, b: Log, n: int, rows: Indices, good: Indices, late: float, weak: float, resolution: float
 ) -> None:
@@ -165,6 +168,7 @@ def is_pair(
     return before > resolution and apart <= max(late, resolution)
 
 
+@cython.cfunc
 def write_pairs(a: Log, b: Log, n: int, rows: Indices, good: Indices, numbers: Doubles, own: Indices) -> int:
     """The numbers of the pairs of good contacts."""
     with cython.nogil:

@@ -2,8 +2,7 @@
 """Sums, products and inverses of intervals: bounds that hold what floating-point numbers round, and those of waves.
 
 What is computed is rounded to nearest and then moved outwards by more than the rounding; where that is no number, as
-zero times infinity is none, there is no bound. They are functions of each element of arrays as numpy's own (`ufunc`),
-which have their types here and not in the `.pxd`.
+zero times infinity is none, there is no bound. They are functions of each element of arrays as numpy's own (`ufunc`).
 """
 
 from __future__ import annotations

@@ -15,6 +15,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, indices, small_numbers
 
 
+@cython.ccall
 def last_rows(t: Any, times: Any, least: int, most: int) -> Any:
     """Rows of the last kept state at or before each time (m,), none below `least` and none above `most`.
 
@@ -47,6 +48,7 @@ def last_rows(t: Any, times: Any, least: int, most: int) -> Any:
     return found
 
 
+@cython.ccall
 def on_lines(t: Any, q: Any, v: Any, times: Any, rows: Any) -> tuple[Any, Any]:
     """Positions and velocities linear within a step: the theta-method."""
     count, n = len(times), q.shape[1]
@@ -64,6 +66,7 @@ def on_lines(t: Any, q: Any, v: Any, times: Any, rows: Any) -> tuple[Any, Any]:
     return found_q, found_v
 
 
+@cython.ccall
 def on_parabolas(t: Any, q: Any, v: Any, jumps: Any, times: Any, rows: Any) -> tuple[Any, Any]:
     """The parabola through both positions that leaves with the first velocity; the last state at its time.
 
@@ -92,6 +95,7 @@ def on_parabolas(t: Any, q: Any, v: Any, jumps: Any, times: Any, rows: Any) -> t
     return found_q, found_v
 
 
+@cython.ccall
 def accelerated(t: Any, q: Any, v: Any, a: Any, times: Any, rows: Any) -> tuple[Any, Any]:
     """Under the acceleration a (n, 1, n_q) kept with each state; none is known beyond the last one."""
     last, count, n = len(t) - 1, len(times), q.shape[1]
@@ -109,6 +113,7 @@ def accelerated(t: Any, q: Any, v: Any, a: Any, times: Any, rows: Any) -> tuple[
     return found_q, found_v
 
 
+@cython.ccall
 def by_dense_output(t: Any, q: Any, v: Any, length: Any, F: Any, times: Any, rows: Any) -> tuple[Any, Any]:
     """By the dense output F (n, terms, 2 n_q) of the step after each state, of that length (n,); `RungeKutta.at`."""
     terms, count, n = F.shape[1], len(times), q.shape[1]

@@ -1,7 +1,3 @@
-from lcpstep.kernels.function cimport Function
-from lcpstep.pointers cimport Doubles, Indices
-
-
 cdef class Coefficients:
     cdef object numbers, marks, kept
     cdef readonly bint varies, two, fixed
@@ -10,5 +6,3 @@ cdef class Coefficients:
     cdef Doubles sliding, sticking, rest
     cdef Indices rough, tried
     cdef Function function
-    cdef bint measure(self, double t, double* q, double* u) noexcept nogil
-    cdef void use(self, double* mu) noexcept nogil

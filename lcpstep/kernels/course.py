@@ -16,6 +16,7 @@ DUE, AHEAD, ARRIVED = range(3)  # stages
 class Course:
     """The way of a run through its span; every kind of motion has its own."""
 
+    @cython.ccall
     def advance(self, goal: int) -> int:
         """`go_on`, called from Python."""
         with cython.nogil:

@@ -207,7 +207,7 @@ DENSE = [
 
 # The first rates, after those at the start, that each stage needs; the same of the dense output and the errors
 NEEDED = [min([j for j in weights if j > 0], default=1) for weights in WEIGHTS]
-NEEDED_LATER = min(j for weights in (*DENSE, ERROR_3, ERROR_5) for j in weights if j > 0)
+NEEDED_LATER: int = min(j for weights in (*DENSE, ERROR_3, ERROR_5) for j in weights if j > 0)
 
 
 def table(rows: list[dict[int, float]]) -> Any:

@@ -46,6 +46,8 @@ def external_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> 
                 out[i] -= m.M[k] * c[3 * j + 2] + m.C[k] * c[3 * j + 1] + m.K[k] * c[3 * j]
 
 
+@cython.ccall
+@cython.nogil
 def varies(m: Model) -> bool:
     """Whether F(t) of a linear system is another at another time."""
     return m.force.given or m.omega != 0.0 or (m.frame.given and not m.carried)
@@ -236,6 +238,8 @@ def obstacle(m: Model, t: float, q: Doubles, v: Doubles) -> None:
         carry_obstacles(m, t, q, v)
 
 
+@cython.ccall
+@cython.nogil
 def moves(m: Model) -> bool:
     """Whether obstacles of flat contacts move."""
     return m.motion.given or m.carried

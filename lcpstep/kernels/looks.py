@@ -32,6 +32,7 @@ def lies_inside(m: Model, t: Any, q: Any, looks: int, share: float, towards: boo
     return bool(find_inside(m, count, at, x, looks, share, towards, own))
 
 
+@cython.cfunc
 def find_inside(
     m: Model, count: int, t: Doubles, q: Doubles, looks: int, share: float, towards: bool, work: Doubles
 ) -> bool:
@@ -95,6 +96,7 @@ def highest(m: Model, t: Any, q: Any, v: Any, looks: int, near: float) -> float:
     return float(find_highest(m, count, at, x, x_t, looks, near, own))
 
 
+@cython.cfunc
 def find_highest(
     m: Model, count: int, t: Doubles, q: Doubles, v: Doubles, looks: int, near: float, work: Doubles
 ) -> float:
@@ -121,6 +123,7 @@ def find_highest(
     return most
 
 
+@cython.ccall
 def at_most(m: Model) -> tuple[float, float]:
     """Bounds of the largest eigenvalues of M^-1 K and M^-1 C of a linear system [1/s^2, 1/s]."""
     inverse = largest_row(m.M_inverse, m.n_q)
@@ -143,6 +146,7 @@ def all_finite(x: Any) -> bool:
     return bool(four_at_once(doubles(x), x.size))
 
 
+@cython.cfunc
 def four_at_once(x: Doubles, n: int) -> bool:
     """Kernel of `all_finite`: sums that do not wait for each other."""
     a, b, c, d, whole_fours = 0.0, 0.0, 0.0, 0.0, n - n % 4
@@ -174,6 +178,7 @@ def turning(
     return (found // m.n_c, found % m.n_c) if found >= 0 else (-1, 0)
 
 
+@cython.cfunc
 def find_turn(
     m: Model,
     count: int,

@@ -1,9 +1,5 @@
-cimport cython
-from lcpstep.kernels.function cimport Function, Functions
-from lcpstep.pointers cimport Doubles
+from lcpstep.kernels.function cimport Functions
 
-
-@cython.final
 cdef class Model:
     cdef readonly object kept
     cdef object of_modes

@@ -1,12 +1,15 @@
 """A kept state of one coordinate with one impulse, `Record.keep`, which the compiler merges into loops over steps.
 
-The `.pxd` file has it as C knows it: a call in such a loop would send the motion from the registers to memory.
+A call in such a loop would send the motion from the registers to memory.
 """
 
 from __future__ import annotations
 
-from lcpstep.kernels.record import Record
-from lcpstep.pointers import Doubles
+import cython
+
+if not cython.compiled:
+    from lcpstep.kernels.record import Record
+    from lcpstep.pointers import Doubles
 
 
 def keep_one(record: Record, t: float, length: float, q: float, v: float, impulse: Doubles) -> None:

@@ -21,6 +21,7 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after, max
 
 
+@cython.ccall
 def steepest(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float, parts: int) -> Any:
     """Of steps no longer than that the one whose energy is the largest multiple of what it may be; masses constant.
 

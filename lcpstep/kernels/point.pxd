@@ -1,9 +1,5 @@
-cimport cython
 from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport Doubles
 
-
-@cython.final
 cdef class Point:
     cdef object numbers
     cdef Model m

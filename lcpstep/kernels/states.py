@@ -19,6 +19,7 @@ if not cython.compiled:
     from lcpstep.pointers import after, max, min, nan
 
 
+@cython.ccall
 def extremes(m: Model, t: Any, q: Any, v: Any) -> tuple[Any, Any]:
     """The smallest and the largest value of every gap, (n_c,) each; infinite where there are no states."""
     low, high, now = np.full(m.n_c, np.inf), np.full(m.n_c, -np.inf), np.zeros(m.n_c)
@@ -32,6 +33,7 @@ def extremes(m: Model, t: Any, q: Any, v: Any) -> tuple[Any, Any]:
     return low, high
 
 
+@cython.ccall
 def gaps_at(m: Model, t: Any, q: Any) -> Any:
     """Every gap at these times and positions, (n, n_c)."""
     found, rest = np.zeros((len(t), m.n_c)), np.zeros(m.n_q)
@@ -42,6 +44,7 @@ def gaps_at(m: Model, t: Any, q: Any) -> Any:
     return found
 
 
+@cython.ccall
 def own_rates(m: Model, t: Any, q: Any, v: Any, moved: bool) -> Any:
     """g_t of every contact, (n, n_c); with `moved` the whole gap velocity G v + g_t."""
     rates, rows, own = np.zeros((len(t), m.n_c)), np.zeros(m.n_c * m.n_q), np.zeros(m.n_c)
@@ -59,6 +62,7 @@ def own_rates(m: Model, t: Any, q: Any, v: Any, moved: bool) -> Any:
     return rates
 
 
+@cython.ccall
 def power(m: Model, t: Any, q: Any, v: Any) -> tuple[Any, Any]:
     """Kinetic energy, and the power v^T f of all forces but those of contacts, (n,) each."""
     kinetic, supplied, work = np.zeros(len(t)), np.zeros(len(t)), np.zeros((m.n_q + 1) * m.n_q)
@@ -77,6 +81,7 @@ def power(m: Model, t: Any, q: Any, v: Any) -> tuple[Any, Any]:
     return kinetic, supplied
 
 
+@cython.ccall
 def energy(m: Model, t: Any, q: Any, v: Any) -> Any:
     """(v^T M v + q^T K q)/2 - constant^T q, (n,)."""
     found, matrix = np.zeros(len(t)), np.zeros(m.n_q * m.n_q)
@@ -97,6 +102,7 @@ def energy(m: Model, t: Any, q: Any, v: Any) -> Any:
     return found
 
 
+@cython.ccall
 def accelerations(m: Model, t: Any, q: Any, v: Any) -> Any:
     """M^-1 f without the forces of contacts, (n, n_q); not-a-number where M is singular."""
     found, work = np.zeros((len(t), m.n_q)), np.zeros((m.n_q + 1) * m.n_q)
@@ -111,6 +117,7 @@ def accelerations(m: Model, t: Any, q: Any, v: Any) -> Any:
     return found
 
 
+@cython.ccall
 def responses(m: Model, t: Any, q: Any, v: Any) -> tuple[Any, Any]:
     """The gaps' Jacobian G and M^-1 G^T by rows, (n, n_c, n_q) each."""
     work, own = np.zeros((m.n_q + 1) * m.n_q), np.zeros(m.n_c)

@@ -21,6 +21,7 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after, max
 
 
+@cython.ccall
 def surplus(m: Model, t: Any, q: Any, v: Any, near: float) -> Any:
     """Of steps whose ends lie one after the other in t (2 n,), q, v (2 n, n_q): five numbers.
 

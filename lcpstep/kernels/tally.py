@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import cython
+
 MAX_STALLED = 100_000  # events at one time
 
 
+@cython.final
 class Tally:
     """Counters of a run.
 

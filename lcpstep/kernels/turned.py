@@ -22,6 +22,7 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, after
 
 
+@cython.ccall
 def farthest_turn(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float, parts: int) -> Any:
     """Which row turns farthest in steps no longer than that at both of whose ends it is pressed, and where.
 

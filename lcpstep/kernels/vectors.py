@@ -1,26 +1,32 @@
 """Short loops over short vectors, which the compiler merges into the kernels that use them: no calls, no checks.
 
-The `.pxd` file has them as C knows them; for long rows see `lcpstep.rows`.
+For long rows see `lcpstep.rows`.
 """
 
 from __future__ import annotations
 
-from lcpstep.pointers import Doubles, Indices
+import cython
+
+if not cython.compiled:
+    from lcpstep.pointers import Doubles, Indices, abs
 
 
 def copy(x: Doubles, y: Doubles, n: int) -> None:
     """X <- y."""
-    x[:n] = y[:n]
+    for i in range(n):
+        x[i] = y[i]
 
 
 def clear(x: Doubles, n: int) -> None:
     """X <- 0."""
-    x[:n] = 0.0
+    for i in range(n):
+        x[i] = 0.0
 
 
 def add(x: Doubles, factor: float, y: Doubles, n: int) -> None:
     """X <- x + factor y."""
-    x[:n] += factor * y[:n]
+    for i in range(n):
+        x[i] += factor * y[i]
 
 
 def product(G: Doubles, v: Doubles, c: int, n: int) -> float:
@@ -42,7 +48,10 @@ def size_of_product(G: Doubles, v: Doubles, c: int, n: int) -> float:
 def largest(x: Doubles, least: float, n: int) -> float:
     """Largest magnitude of the entries of x, or `least`."""
     for i in range(n):
-        least = max(least, abs(x[i]))
+        if x[i] > least:
+            least = x[i]
+        elif -x[i] > least:
+            least = -x[i]
     return least
 
 
@@ -58,10 +67,14 @@ def distance(x: Doubles, y: Doubles, n: int) -> float:
     """Largest difference of two vectors."""
     most = 0.0
     for i in range(n):
-        most = max(most, abs(x[i] - y[i]))
+        if x[i] - y[i] > most:
+            most = x[i] - y[i]
+        elif y[i] - x[i] > most:
+            most = y[i] - x[i]
     return most
 
 
 def copy_indices(x: Indices, y: Indices, n: int) -> None:
     """X <- y, of indices."""
-    x[:n] = y[:n]
+    for i in range(n):
+        x[i] = y[i]

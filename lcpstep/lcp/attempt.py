@@ -17,7 +17,7 @@ if not cython.compiled:
     from lcpstep.arrays import doubles, small_numbers
     from lcpstep.lcp.part import Part
     from lcpstep.lcp.sparse_rows import SparseRows, add_products, add_sizes
-    from lcpstep.pointers import Doubles, abs, inf, max
+    from lcpstep.pointers import Doubles, Indices, abs, inf, max
     from lcpstep.rows import copy, largest_entry
 
 
@@ -65,6 +65,7 @@ class Attempt:
         self.mobility, self.defect = doubles(self.arrays["mobility"]), doubles(self.arrays["defect"])
         self.chosen = small_numbers(self.marks)
 
+    @cython.ccall
     def pose(self, r: Any, c: Any, c_size: Any) -> None:
         """Take over what the part has of a whole problem, and of what does not change from one to the next."""
         part = self.part
@@ -74,6 +75,7 @@ class Attempt:
         gather(self.c_size, doubles(c_size), part.rows, part.m)
         gather(self.mobility, self.all_mobility, part.rows, part.m)
 
+    @cython.ccall
     def begin(self) -> None:
         """From x = 0, and z as it is on the rows chosen."""
         for j in range(self.part.n):
@@ -84,10 +86,12 @@ class Attempt:
         measure(self)
         self.scale = 0.0
 
+    @cython.ccall
     def change(self, by: Any) -> float:
         """Add these changes of x and z, in the order of the band; the relative error of A x - r - G^T z and of w."""
         return changed(self, doubles(by))
 
+    @cython.ccall
     def put(self, x: Any, z: Any) -> float:
         """Defects and sizes at these x and z; the largest size of w, with what the terms of x may move it by."""
         copy(self.x, doubles(x), self.part.n)
@@ -95,10 +99,12 @@ class Attempt:
         measure(self)
         return largest_size(self)
 
+    @cython.ccall
     def judge(self) -> None:
         """The residual; what the rounding of x makes of w counts as zero."""
         judge(self)
 
+    @cython.ccall
     def exchange(self) -> int:
         """Rows with a negative z are chosen no more, and those with a negative w are; how many have changed."""
         return exchange(self)
@@ -112,7 +118,7 @@ def finite(x: Doubles, n: int) -> bool:
     return total == 0.0
 
 
-def gather(target: Doubles, source: Doubles, where: Any, n: int) -> None:
+def gather(target: Doubles, source: Doubles, where: Indices, n: int) -> None:
     """The numbers at n places of a vector."""
     for k in range(n):
         target[k] = source[where[k]]

@@ -8,7 +8,6 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.lcp.enumeration import TINY
 from lcpstep.lcp.infeasible import explained, farkas
 from lcpstep.lcp.problem import Ray, Solution, check_finite
 from lcpstep.lcp.status import (
@@ -25,7 +24,7 @@ from lcpstep.lcp.status import (
 
 if not cython.compiled:
     from lcpstep.arrays import are_doubles, doubles, indices
-    from lcpstep.lcp.enumeration import enumerate_bases, enumerate_vertices
+    from lcpstep.lcp.enumeration import TINY, enumerate_bases, enumerate_vertices
     from lcpstep.lcp.judge import judge
     from lcpstep.lcp.kernel import solve_dense
     from lcpstep.lcp.scaling import all_finite
@@ -51,6 +50,7 @@ class _Kept(threading.local):
 _kept = _Kept()
 
 
+@cython.cfunc
 def space_for(n: int) -> Workspace:
     """A work space for n unknowns."""
     spaces = _kept.spaces
@@ -84,6 +84,7 @@ def pivoting(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> 
     return told(W, b, z, w, work, status)
 
 
+@cython.cfunc
 def search(W: Any, b: Any, z: Any, w: Any, tol: float, limit: int, work: Workspace, status: int) -> Solution:
     """The thorough search for a solution, and another method, unless there is a proof that there is none."""
     if status == RAY and (certificate := farkas(W, b)) is not None:
@@ -102,6 +103,7 @@ def search(W: Any, b: Any, z: Any, w: Any, tol: float, limit: int, work: Workspa
     return told(W, b, z, w, work, status)
 
 
+@cython.cfunc
 def told(W: Any, b: Any, z: Any, w: Any, work: Workspace, status: int) -> Solution:
     """The solution, or why there is none."""
     n = len(b)
@@ -144,6 +146,7 @@ def many(
     )  # fmt: skip
 
 
+@cython.cfunc
 def pivot_once(
     W: Doubles,
     b: Doubles,
@@ -163,6 +166,7 @@ def pivot_once(
         return status
 
 
+@cython.cfunc
 def enumerate_all(
     W: Doubles,
     b: Doubles,
@@ -189,6 +193,7 @@ def enumerate_all(
         return status
 
 
+@cython.cfunc
 def solve_all(
     matrices: Doubles,
     shared: bool,
@@ -213,12 +218,14 @@ def solve_all(
             iterations[i], residual[i] = work.iterations, work.residual
 
 
+@cython.cfunc
 def ray(work: Workspace, n: int) -> Ray:
     """The ray that the work space holds."""
     direction, start = array_of(work.ray_direction, n), array_of(work.ray_start, n)
     return Ray(start, direction, work.ray_z_0, work.ray_dz_0, 1.0 / array_of(work.row_scale, n))
 
 
+@cython.cfunc
 def array_of(x: Doubles, n: int) -> Any:
     """An array with these numbers."""
     array = np.empty(n)

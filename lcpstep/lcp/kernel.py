@@ -15,12 +15,11 @@ from typing import Any
 
 import cython
 
-from lcpstep.lcp.enumeration import TINY
 from lcpstep.lcp.status import ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, TOLERANCE
 
 if not cython.compiled:
     from lcpstep.arrays import doubles
-    from lcpstep.lcp.enumeration import enumerate_bases, enumerate_vertices
+    from lcpstep.lcp.enumeration import TINY, enumerate_bases, enumerate_vertices
     from lcpstep.lcp.judge import judge, proves_infeasible
     from lcpstep.lcp.lemke import lemke
     from lcpstep.lcp.principal import exchange_indices

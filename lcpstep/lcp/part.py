@@ -14,7 +14,7 @@ import numpy as np
 if not cython.compiled:
     from lcpstep.arrays import doubles, indices, small_numbers
     from lcpstep.lcp.sparse_rows import SparseRows
-    from lcpstep.pointers import Doubles
+    from lcpstep.pointers import Doubles, Flags, Indices
 
 NOWHERE = -1
 
@@ -59,6 +59,7 @@ class Part:
         self.x_number, self.w_number = indices(self.lists["x_number"]), indices(self.lists["w_number"])
         self.n_b, self.queued = n_b, 0
 
+    @cython.ccall
     def choose(self, active: Any, w: Any) -> bool:
         """Take what rows reach that are active and have w < 0, or no number; whether that is another part."""
         spread(self, small_numbers(active), doubles(w))
@@ -69,6 +70,7 @@ class Part:
         take(self.G_T, self.all_G_T, self.coordinates, self.n, self.w_number)
         return True
 
+    @cython.ccall
     def fill(self, chosen: Any, d: Any, k: int, storage: Any) -> None:
         """Write the matrix of the rows chosen with d on their diagonal; rows of the others are of the unit matrix.
 
@@ -77,7 +79,7 @@ class Part:
         fill(self, small_numbers(chosen), doubles(d), k, doubles(storage))
 
 
-def spread(part: Part, active: Any, w: Any) -> None:
+def spread(part: Part, active: Flags, w: Doubles) -> None:
     """Mark the rows and blocks that are reached: row after row, block after block."""
     part.queued = 0
     for b in range(part.n_b):
@@ -95,7 +97,7 @@ def spread(part: Part, active: Any, w: Any) -> None:
             enter_rows_at(part, part.member[k], active)
 
 
-def enter_rows_at(part: Part, j: int, active: Any) -> None:
+def enter_rows_at(part: Part, j: int, active: Flags) -> None:
     """Enter the active rows that have an entry at the coordinate j."""
     for e in range(part.all_G_T.begin[j], part.all_G_T.begin[j + 1]):
         i = part.all_G_T.column[e]
@@ -135,7 +137,7 @@ def enlist(part: Part) -> bool:
     return changed
 
 
-def take(target: SparseRows, source: SparseRows, rows: Any, n: int, number: Any) -> None:
+def take(target: SparseRows, source: SparseRows, rows: Indices, n: int, number: Indices) -> None:
     """These rows of a matrix, in the columns that have a number."""
     place = 0
     for k in range(n):
@@ -147,7 +149,7 @@ def take(target: SparseRows, source: SparseRows, rows: Any, n: int, number: Any)
     target.begin[n] = place
 
 
-def fill(part: Part, chosen: Any, d: Doubles, k: int, storage: Doubles) -> None:
+def fill(part: Part, chosen: Flags, d: Doubles, k: int, storage: Doubles) -> None:
     """The matrix of `saddle`: row p and column q lie at q (3 k + 1) + 2 k + p - q, which is 3 k q + p + 2 k."""
     for j in range(part.n):
         p = part.x_place[j]

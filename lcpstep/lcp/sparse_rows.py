@@ -27,12 +27,14 @@ class SparseRows:
         self.value = doubles(self.arrays["value"])
         self.m = matrix.shape[0]
 
+    @cython.ccall
     def times(self, x: Any) -> Any:
         """A x, of a contiguous x (n,)."""
         target = np.zeros(self.m)
         add_products(self, self.m, 1.0, doubles(x), doubles(target))
         return target
 
+    @cython.ccall
     def sizes(self, x: Any) -> Any:
         """|A| |x|: the sizes of the terms of A x."""
         target = np.zeros(self.m)

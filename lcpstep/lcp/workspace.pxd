@@ -1,8 +1,3 @@
-from lcpstep.pointers cimport Doubles, Indices
-
-cdef Py_ssize_t VECTORS, LISTS
-
-
 cdef class Workspace:
     cdef object numbers, lists
     cdef Doubles columns, inverse, factor, scaled_b, row_scale, column_scale, x, dx, slack, dslack, left

@@ -1,10 +1,3 @@
-cimport cython
-from lcpstep.pointers cimport Doubles, Indices
-
-cdef Py_ssize_t ENDS, IMPACTS
-
-
-@cython.final
 cdef class Answers:
     cdef object task
     cdef double t_start, t_end
@@ -12,5 +5,3 @@ cdef class Answers:
     cdef bint strict, has_tangents
     cdef Doubles starts, targets, radius, scale, states, impacts, landings, tangents, final
     cdef Indices counts, reached, taken, codes
-    cdef void note_impact(self, Py_ssize_t i, Py_ssize_t k, double t, double before, double after) noexcept nogil
-    cdef void note_landing(self, Py_ssize_t i, Py_ssize_t k, double t) noexcept nogil

@@ -50,6 +50,7 @@ class Runs:
         self.old_q = self.old_v = self.length = self.speed = 0.0
 
 
+@cython.ccall
 def follow(r: Runs, until: int) -> bool:
     """Every run in turn; whether all are done, or so many periods have been taken; called from Python."""
     with cython.nogil:

@@ -1,22 +1,9 @@
-cimport cython
-from lcpstep.kernels.model cimport Model
-from lcpstep.maps.answers cimport Answers
-from lcpstep.pointers cimport Doubles
-from lcpstep.stepping.theta_method.moving cimport Plan
-
-
-@cython.final
 cdef class Lanes:
     cdef readonly dict arrays
     cdef object space, own
     cdef Py_ssize_t n
     cdef double h, theta, A_f, A_q, A_v, A_g, W
     cdef Doubles q, v, g, u, p, before, slack, nobody, force, closed, free
-    cpdef void take(self, Plan plan)
-
-
-cpdef object advance(Model m, Lanes lanes, Answers a, double t0, double side, Py_ssize_t first, Py_ssize_t begin, Py_ssize_t last, Py_ssize_t k)
-cdef void take_step(Model m, Lanes lanes, double f, double f_next) noexcept nogil
 cdef void find_free "lcpstep_find_free"(
     double* free, double* q, double* v, double push, double A_q, double A_v, Py_ssize_t n
 ) noexcept nogil
@@ -30,4 +17,3 @@ cdef void measure "lcpstep_measure"(
     double* g, double* u, double* q, double* v, double G, double height, double ds, Py_ssize_t n
 ) noexcept nogil
 cdef void count_closed "lcpstep_count_closed"(double* closed, double* p, Py_ssize_t n) noexcept nogil
-cdef void note_impacts(Lanes lanes, Answers a, double t, Py_ssize_t k) noexcept nogil

@@ -51,6 +51,7 @@ class Lanes:
         self.closed, self.free = doubles(self.own[0]), doubles(self.own[1])
         self.nobody, self.force = doubles(self.space[:1]), doubles(self.space[1:])
 
+    @cython.ccall
     def take(self, plan: Plan) -> None:
         """Steps as the plan says."""
         self.h, self.theta = plan.h, plan.theta
@@ -58,6 +59,7 @@ class Lanes:
         self.A_g, self.W = plan.X[0], plan.W[0]
 
 
+@cython.ccall
 def advance(
     m: Model, lanes: Lanes, a: Answers, t0: float, side: float, first: int, begin: int, last: int, k: int
 ) -> None:

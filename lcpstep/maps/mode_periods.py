@@ -122,6 +122,7 @@ class Follow:
             copy(self.x, self.starts, n)
 
 
+@cython.ccall
 def follow(f: Follow, until: int) -> int:
     """Every run in turn, up to so many periods; DONE, BUFFER_FULL, or why there is no derivative.
 

@@ -70,6 +70,7 @@ def along_events(s: Flight, record: Record, J: Doubles, last: float) -> float:
     return last
 
 
+@cython.ccall
 def along_logs(s: Flight, log: Any, counts: Any, t_start: float, t_end: float, out: Any) -> None:
     """Derivatives of periods whose impacts were recorded by any method, into out; called from Python.
 

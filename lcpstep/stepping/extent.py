@@ -15,6 +15,7 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after, max
 
 
+@cython.ccall
 def extent(
     m: Model, t: float, q: Any, v: Any, step: float, piece: float, implicit: Any, pushed: bool
 ) -> float:
@@ -33,6 +34,7 @@ def extent(
     return found
 
 
+@cython.ccall
 def places(m: Model, q: Any, v: Any, step: float) -> float:
     """The largest of places, offsets and ways within a step that v leads along [m]."""
     at, at_rate = doubles(q), doubles(v)
@@ -40,6 +42,7 @@ def places(m: Model, q: Any, v: Any, step: float) -> float:
     return largest(m.offset, found, m.n_c)
 
 
+@cython.cfunc
 def displacement(m: Model, t: float, q: Doubles, v: Doubles, h: float, work: Doubles) -> float:
     """How far obstacles and the frame are from their places at the start, and how far they go in a time h [m]."""
     c, found = work, 0.0
@@ -59,6 +62,7 @@ def displacement(m: Model, t: float, q: Doubles, v: Doubles, h: float, work: Dou
     return found
 
 
+@cython.cfunc
 def driven(m: Model, t: float, q: Doubles, v: Doubles, h: float, implicit: Doubles, work: Doubles) -> float:
     """How far forces push in a time h, as stiff springs let them [m]; harmonic ones at their largest."""
     n = m.n_q
@@ -79,6 +83,7 @@ def driven(m: Model, t: float, q: Doubles, v: Doubles, h: float, implicit: Doubl
     return h * h * largest(a, 0.0, n) if finite(a, n) else 0.0
 
 
+@cython.ccall
 def is_stiff(m: Model) -> bool:
     """Whether C or K is not zero."""
     found, n = False, m.n_q * m.n_q

@@ -98,6 +98,7 @@ class Attempts(Control):
         self.look_ahead(span[0])
         self.size_q, self.size_v = largest(self.s.q, 0.0, s.n_q), largest(self.s.v, 0.0, s.n_q)
 
+    @cython.cfunc
     def place_saved(self) -> None:
         """Where the state at the start of steps and parts is kept."""
         n_q, n_c, n = self.s.n_q, self.s.n_c, self.s.n_moving

@@ -228,6 +228,7 @@ class Control(Course):
         self.into = self.into - h if self.into - h > rounding else 0.0
         return False
 
+    @cython.ccall
     def prepare(self) -> None:
         """Make the matrices of the level at hand and of its halves, which `refusal` has found wanting."""
         for level in (self.level, self.level + 1):

@@ -64,6 +64,7 @@ class Course(Events):
         step(self.s)
         return DONE
 
+    @cython.ccall
     def keep_now(self) -> None:
         """Keep the state at the time reached; called from Python."""
         keep(self.s, self.s.now - self.s.t0, self.s.now)
@@ -210,11 +211,13 @@ def keep_times(s: Arc, stop: float, last: bool) -> None:
         s.record.next_time += 1
 
 
+@cython.ccall
 def show(s: Arc) -> None:
     """Leave the state at the time reached in `state`; called from Python."""
     state_at(s, s.now - s.t0)
 
 
+@cython.ccall
 def evaluate(s: Arc, kept: Any, coordinates: Any, times: Any, row: Any, q: Any, v: Any) -> None:
     """States at times, from the kept states before them, each that of its row; called from Python.
 

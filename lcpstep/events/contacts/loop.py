@@ -77,6 +77,7 @@ class Course(Events):
         """A step of the motion, or what precedes it; a status."""
         return yielding(self.s, self.record, self.tally, go_further(self.s, self.record, self.tally))
 
+    @cython.ccall
     def keep_now(self) -> None:
         """Keep the state at the base time, called from Python."""
         keep(self.s.rows, self.record, self.s.clock.t0, self.s.y)

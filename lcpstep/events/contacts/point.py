@@ -28,6 +28,7 @@ if not cython.compiled:
     from lcpstep.pointers import after
 
 
+@cython.ccall
 def modes(s: Rubbing) -> tuple[Any, Any]:
     """Modes and directions of the contacts, (n_c,) each."""
     mode, direction = np.zeros(s.n_c, dtype=int), np.zeros(s.n_c)
@@ -36,6 +37,7 @@ def modes(s: Rubbing) -> tuple[Any, Any]:
     return mode, direction
 
 
+@cython.ccall
 def settle(s: Rubbing, t: float, x: Any, closed: Any) -> int:
     """Find and hold the modes of the contacts that are closed at the state x = (q, v); a status."""
     s.clock.find_corners(t)
@@ -50,6 +52,7 @@ def settle(s: Rubbing, t: float, x: Any, closed: Any) -> int:
     return adopt_modes(s) if code == DONE else code
 
 
+@cython.ccall
 def hold(s: Rubbing, t: float, x: Any, mode: Any, direction: Any) -> bool:
     """Hold the rows of these modes from the state x = (q, v) on; False where no forces do."""
     s.clock.find_corners(t)
@@ -62,6 +65,7 @@ def hold(s: Rubbing, t: float, x: Any, mode: Any, direction: Any) -> bool:
     return measure_rows(s, t, y) and hold_modes(s.rows)
 
 
+@cython.ccall
 def field(s: Rubbing, t: float, x: Any) -> Any:
     """(v, v') with the rows held, (2 n_q,)."""
     dy = np.zeros(2 * s.n_q)
@@ -69,6 +73,7 @@ def field(s: Rubbing, t: float, x: Any) -> Any:
     return dy
 
 
+@cython.ccall
 def slopes(s: Rubbing, t: float, x: Any, scale: Any) -> Any:
     """Derivative of `field` by x, (2 n_q, 2 n_q), by differences of fourth order over shares of `scale` (2 n_q,)."""
     n = 2 * s.n_q
@@ -87,6 +92,7 @@ def slopes(s: Rubbing, t: float, x: Any, scale: Any) -> Any:
     return A
 
 
+@cython.ccall
 def guards(s: Rubbing, t: float, x: Any) -> Any:
     """What ends the modes, (n_c, 3), see `events.contacts.guards`."""
     out = np.zeros((s.n_c, GUARDS))
@@ -95,6 +101,7 @@ def guards(s: Rubbing, t: float, x: Any) -> Any:
     return out
 
 
+@cython.ccall
 def forces(s: Rubbing, t: float, x: Any) -> Any:
     """Forces of joints, normals and tangents under the modes held, (n_j + 2 n_c,)."""
     out, dy = np.zeros(s.n_r), np.zeros(2 * s.n_q)
@@ -103,11 +110,13 @@ def forces(s: Rubbing, t: float, x: Any) -> Any:
     return out
 
 
+@cython.ccall
 def pulls(s: Rubbing) -> Any:
     """Friction that comes with each normal force under the modes held, (n_c,): -s mu of a contact that slides."""
     return np.array([pull(s.rows, s.n_j + c) for c in range(s.n_c)])
 
 
+@cython.ccall
 def rows(s: Rubbing, t: float, x: Any) -> Any:
     """Rows R, M^-1 R^T (n_r, n_q) of joints, normals and tangents, rates and gaps (n_r,); x = (q, v)."""
     if s.clock.low > s.clock.high:  # nothing has been held yet

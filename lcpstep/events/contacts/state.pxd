@@ -1,18 +1,7 @@
-from lcpstep.events.hybrid.roots cimport Scan
 from lcpstep.events.hybrid.state cimport Motion
-from lcpstep.events.rows.contacts cimport Contacts
-from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport Clock
-from lcpstep.kernels.coefficients cimport Coefficients
 from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.rungekutta cimport RungeKutta
-from lcpstep.kernels.tally cimport Tally
-from lcpstep.pointers cimport Doubles, Indices
-
-cdef Py_ssize_t ALL, GUARDS, ENTERED, NOT_FINITE
-
 
 cdef class Rubbing(RungeKutta):
     cdef object rule, table, given, marks, looks, arms
@@ -41,5 +30,3 @@ cdef class Rubbing(RungeKutta):
     cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, thrown, tried, hops, carried
     cdef Doubles value, band, samples
     cdef Indices armed
-    cdef Py_ssize_t proceed(self, Record record, Tally tally) noexcept nogil
-    cdef Py_ssize_t straying_at(self, double place, double h, double level) noexcept nogil

@@ -168,10 +168,12 @@ class Rubbing(RungeKutta):
         """`loose.straying` at that fraction of the step of size h; -1 where a state is not finite. As `proceed`."""
         return -1
 
+    @cython.ccall
     def coefficient(self, c: int) -> float:
         """The coefficient of friction with which contact c slides."""
         return float(self.mu[c])
 
+    @cython.ccall
     def critical_friction(self, c: int) -> float:
         """The coefficient of friction beyond which contact c, sliding as it does, jams; 0 where none does."""
         i = self.n_j + c

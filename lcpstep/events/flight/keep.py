@@ -40,6 +40,7 @@ def keep_event(s: Flight) -> None:
         keep(s, s.now)
 
 
+@cython.ccall
 def evaluate(s: Flight, kept: Any, times: Any, row: Any, q: Any, v: Any) -> None:
     """States at times, from the kept states before them, each that of its row; called from Python."""
     t, at, found_q, found_v = doubles(times), indices(row), doubles(q), doubles(v)

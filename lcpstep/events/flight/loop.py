@@ -46,6 +46,7 @@ class Course(Events):
         """One round; a status."""
         return DONE if go_further(self.s) else NOT_FINITE
 
+    @cython.ccall
     def keep_now(self) -> None:
         """Keep the state last asked for, at the time reached; called from Python."""
         keep(self.s, self.s.now)

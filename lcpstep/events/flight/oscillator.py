@@ -46,6 +46,7 @@ class Oscillator:
         self.X, self.Y, self.Omega = X, Y, Omega
 
 
+@cython.ccall
 def oscillator_of(m: Model) -> Oscillator | None:
     """A model's motion between events in closed form; None where it has none."""
     if not (m.linear and m.n_q == 1 and m.n_c <= 1 and m.flat and not m.force.given):
@@ -75,6 +76,8 @@ def envelope(delta: float, w2: float, x: float, dx: float) -> float:
     return sqrt(x * x + rise * rise / (w2 - delta * delta))
 
 
+@cython.ccall
+@cython.nogil
 def fundamental(delta: float, w2: float, tau: float) -> tuple[float, float, float]:
     """S, S' and P at tau >= 0."""
     if delta == 0.0 and w2 == 0.0:

@@ -107,6 +107,7 @@ class Machine:
         g_t = guard_gradient(self, mode, k, t, doubles(x))
         return self.numbers[4].copy(), g_t
 
+    @cython.ccall
     def target_of(self, k: int) -> int:
         """The mode that guard k leads to."""
         return self.target[k]

@@ -86,6 +86,7 @@ class Motion(RungeKutta):
         self.row, self.switches = 0, 0
         return taken
 
+    @cython.ccall
     def make_room(self) -> None:
         """Twice as many lines of the log."""
         self.kept_log = np.concatenate([self.kept_log, np.zeros_like(self.kept_log)])

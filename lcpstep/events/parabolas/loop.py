@@ -52,6 +52,7 @@ class Course(Events):
             fly(self.s, self.record, self.tally)
         return DONE
 
+    @cython.ccall
     def keep_now(self) -> None:
         """Keep the state at the base time, called from Python."""
         copy(self.s.q, self.s.q0, 2 * self.s.n_q)

@@ -1,9 +1,3 @@
-from lcpstep.kernels.clock cimport Clock
-from lcpstep.kernels.model cimport Model
-from lcpstep.kernels.sudden cimport Sudden
-from lcpstep.pointers cimport Doubles, Indices
-
-
 cdef class Rows(Clock):
     cdef object row_numbers, row_list
     cdef readonly Model model, joints, tangents

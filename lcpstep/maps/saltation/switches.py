@@ -39,7 +39,7 @@ if not cython.compiled:
     from lcpstep.pointers import Doubles, abs, after, whole
 
 TOLERANCE = 1e-12  # of the variational flow
-RELATIVE_STEP = np.finfo(float).eps ** 0.2 * 0.1  # of the differences of fields and resets
+RELATIVE_STEP: float = np.finfo(float).eps ** 0.2 * 0.1  # of the differences of fields and resets
 VECTORS = 8
 
 

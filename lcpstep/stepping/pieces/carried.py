@@ -31,6 +31,7 @@ def put_kept_back(m: Model, record: Record, first: int, end: int) -> None:
             v[i] -= c[3 * i + 1]
 
 
+@cython.ccall
 def displaced(m: Model, t: float) -> tuple[Any, Any]:
     """How far those coordinates are from the scene's at time t, and how fast they part; zero if not carried."""
     found, still = np.zeros((m.n_q, 3)), np.zeros(m.n_q)

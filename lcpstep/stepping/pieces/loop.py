@@ -65,17 +65,20 @@ class Steps(Stepwise):
         self.watched = obstacles_move(m) or not m.flat
         self.asking, self.told = self.watched, False
 
+    @cython.ccall
     def begin(self, t: float) -> int:
         """The initial state, at time t; a code."""
         with cython.nogil:
             return begin_motion(self.m, self.plan, self.w, self.record, t)
 
+    @cython.ccall
     def put_back(self, end: int) -> None:
         """Kept states up to before the end, which are in the kernels' coordinates, in those of the scene."""
         if end > self.own:
             put_kept_back(self.m, self.record, self.own, end)
             self.own = end
 
+    @cython.ccall
     def run(self, t0: float, first: int, last: int) -> int:
         """`take`, called from Python."""
         with cython.nogil:

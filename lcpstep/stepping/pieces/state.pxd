@@ -1,12 +1,5 @@
-cimport cython
-from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport Clock
-from lcpstep.kernels.sudden cimport Sudden
-from lcpstep.lcp.workspace cimport Workspace
-from lcpstep.pointers cimport Doubles, Indices
 
-
-@cython.final
 cdef class Plan:
     cdef readonly object fields
     cdef object kept
@@ -18,8 +11,6 @@ cdef class Plan:
     cdef Doubles A_inverse, AG, WA, A, unit
     cdef Indices pivots
 
-
-@cython.final
 cdef class Work:
     cdef readonly object numbers, marks, matrices, places
     cdef readonly Py_ssize_t n_q, n_c
@@ -39,7 +30,3 @@ cdef class Work:
     cdef Doubles end_u, begins
     cdef public double jump, margin
     cdef public bint doubtful
-    cdef void place_vectors(self, double* x)
-    cdef void place_numbers(self, double* x)
-    cdef void place_marks(self, Py_ssize_t* x)
-    cdef void place_matrices(self, double* x)

@@ -1,10 +1,13 @@
-"""Times of `Located` to rounding, as kernels that the compiler merges into others (see the `.pxd` file)."""
+"""Times of `Located` to rounding, as kernels that the compiler merges into others."""
 
 from __future__ import annotations
 
-from lcpstep.pointers import abs, max, min
-from lcpstep.stepping.pieces.codes import EPS, LATE
-from lcpstep.stepping.pieces.state import Plan, Work
+import cython
+
+if not cython.compiled:
+    from lcpstep.pointers import abs, max, min
+    from lcpstep.stepping.pieces.codes import EPS, LATE
+    from lcpstep.stepping.pieces.state import Plan, Work
 
 
 def within(w: Work, t: float) -> float:

@@ -1,20 +1,10 @@
-from lcpstep.kernels.model cimport Model
-from lcpstep.pointers cimport Doubles, Indices
-from lcpstep.kernels.coefficients cimport Coefficients
-from lcpstep.kernels.coulomb cimport ContactProblem
-from lcpstep.stepping.constraints.joint_rows cimport Elimination
-
-cdef Py_ssize_t VECTORS, SQUARES
-
 cdef class Rows
-
 
 cdef class Plan:
     cdef readonly object matrices
     cdef public double h, theta, slack
     cdef public bint constant
     cdef Doubles A_q, A_v, A_f, X, W
-
 
 cdef class State:
     cdef readonly object arrays
@@ -28,16 +18,13 @@ cdef class State:
     cdef Doubles A, J
     cdef Indices pivots
 
-
 cdef class Blows:
     cdef object kept
     cdef bint several, last
     cdef double least, fastest, slow
     cdef Py_ssize_t taken, n_a
     cdef Indices ids
-    cdef void begin(self, State s, Rows rows) noexcept nogil
     cdef Doubles v, u, sliding, own_v, own_u, own_sliding, p
-
 
 cdef class Rows:
     cdef readonly object arrays

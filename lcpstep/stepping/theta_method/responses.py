@@ -76,6 +76,8 @@ def refit(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
         constant_rows(m, plan, s, c, t)
 
 
+@cython.ccall
+@cython.nogil
 def constant_rows(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
     """X and W of a linear scene in which no row ever changes."""
     gap_rates(m, t, s.q, s.v, c.H, c.H_t)

@@ -38,6 +38,7 @@ class Steps(Stepwise):
         single = m.linear and m.flat and s.n_c == 1 and s.n_q == 1
         self.single = single and rows.n == 1 and not rows.projected
 
+    @cython.ccall
     def begin(self, t: float, side: float) -> None:
         """Forces and gaps of the initial state, which is kept where states are; side: see `steps.start_side`."""
         look(self.m, self.s, self.rows, side)
@@ -46,6 +47,7 @@ class Steps(Stepwise):
         elif self.record.times[0] == t:
             self.record.keep_awaited(self.s.q, self.s.v, self.s.impulse)
 
+    @cython.ccall
     def run(self, t0: float, first: int, last: int, solved: bool) -> int:
         """`take`, called from Python; `solved`: the problem at hand is."""
         self.solved = solved

@@ -1,0 +1,135 @@
+"""The Python sources of kernels, as `declarations` reads them.
+
+A kernel is a file that imports `cython`. Its annotations are its types in C; what these cannot tell stands in a
+`.pxd` file beside it: the fields of classes, and what is C in itself.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+SCALARS = ("bint", "Py_ssize_t", "double")  # each holds those before it
+POINTERS = ("Doubles", "Indices", "Flags", "Callback")
+WORDS = {"int": "Py_ssize_t", "float": "double", "bool": "bint", "Any": "object"} | {x: x for x in POINTERS}
+IN_C = {"lcpstep.pointers", "lcpstep.arrays", "lcpstep.stepping.pieces.codes"}  # whose `.pxd` says all
+MERGED = IN_C | {
+    "lcpstep.kernels.vectors",
+    "lcpstep.kernels.one_row",
+    "lcpstep.kernels.quadratic",
+    "lcpstep.stepping.pieces.times",
+}  # short functions, merged into the modules that use them
+Type = str | None  # as Cython writes it; of classes, where several modules meet, "module:name"
+
+
+class Kernel:
+    """A kernel's source, and what its names stand for.
+
+    homes       the module that each name is imported from;  cimported   those that C imports
+    classes, functions   by name
+    fields      of each class, as far as the `.pxd` file tells them
+    """
+
+    def __init__(self, root: Path, name: str) -> None:
+        self.root, self.name = root, name
+        self.path = root / f"{name.replace('.', '/')}.py"
+        self.text = self.path.read_text(encoding="utf-8")
+        self.header = read(self.path.with_suffix(".pxd"))
+        self.tree = ast.parse(self.text)
+        self.homes: dict[str, str] = {}
+        self.cimported: set[str] = set()
+        for module, names, in_c in imports(self.tree):
+            self.homes |= dict.fromkeys(names, module)
+            self.cimported |= set(names) if in_c else set()
+        for module, names in re.findall(r"^from (\S+) cimport (.+)$", self.header, re.MULTILINE):
+            self.homes |= dict.fromkeys(re.split(r",\s*", names), module)
+            self.cimported |= set(re.split(r",\s*", names))
+        self.classes = {node.name: node for node in self.tree.body if isinstance(node, ast.ClassDef)}
+        self.functions = functions_of(self.tree)
+        self.methods = {name: functions_of(node) for name, node in self.classes.items()}
+        self.fields = fields_of(self.header)
+
+    def type_of(self, annotation: ast.expr | None) -> Type:
+        """C's name of a type, None where it has none."""
+        if isinstance(annotation, ast.Constant) and annotation.value is None:
+            return "void"
+        if isinstance(annotation, ast.Name):
+            known = annotation.id in self.classes or annotation.id in self.cimported
+            return WORDS.get(annotation.id) or (annotation.id if known else None)
+        if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value) == "tuple":
+            kinds = [self.type_of(kind) for kind in getattr(annotation.slice, "elts", [])]
+            return f"({', '.join(map(str, kinds))})" if kinds and set(kinds) <= set(SCALARS) else None
+        return None
+
+    def home_of(self, name: str) -> Kernel | None:
+        """The kernel that a name is from; None: of no kernel."""
+        module = self.name if name in self.classes or name in self.functions else self.homes.get(name, "")
+        return self if module == self.name else kernel(self.root, module)
+
+
+@functools.cache
+def kernel(root: Path, name: str) -> Kernel | None:
+    """The kernel of that name, if it is one."""
+    path = root / f"{name.replace('.', '/')}.py"
+    return Kernel(root, name) if name.startswith("lcpstep.") and path.exists() else None
+
+
+def kernels(root: Path) -> list[str]:
+    """The names of all kernels."""
+    files = sorted(root.glob("lcpstep/**/*.py"))
+    found = [file for file in files if re.search("^import cython$", read(file), re.MULTILINE)]
+    return sorted({".".join(file.relative_to(root).with_suffix("").parts) for file in found} | IN_C)
+
+
+def read(path: Path) -> str:
+    """The text of a file, none where there is none."""
+    return path.read_text(encoding="utf-8") if path.exists() else ""
+
+
+def imports(tree: ast.Module) -> Iterator[tuple[str, list[str], bool]]:
+    """Modules that a file imports from, the names, and whether C imports them."""
+    for node in tree.body:
+        for inner in node.body if isinstance(node, ast.If) else [node]:
+            if isinstance(inner, ast.ImportFrom) and inner.module:
+                yield inner.module, [name.asname or name.name for name in inner.names], inner is not node
+
+
+def functions_of(node: ast.Module | ast.ClassDef) -> dict[str, ast.FunctionDef]:
+    """Functions of a module, or methods of a class."""
+    return {f.name: f for f in node.body if isinstance(f, ast.FunctionDef)}
+
+
+def fields_of(header: str) -> dict[str, dict[str, str]]:
+    """The types of the fields of each class that a `.pxd` file has."""
+    found: dict[str, dict[str, str]] = {}
+    for line in header.splitlines():
+        if match := re.match(r"cdef class (\w+)", line):
+            found[match[1]] = {}
+        elif found and (match := re.match(r"    cdef (?:public |readonly )?([\w.]+) (.+)$", line)):
+            next(reversed(found.values())).update(dict.fromkeys(re.split(r",\s*", match[2]), match[1]))
+    return found
+
+
+def marks(f: ast.FunctionDef | ast.ClassDef) -> set[str]:
+    """What decorates a function or a class."""
+    return {ast.unparse(mark) for mark in f.decorator_list}
+
+
+def qualified(k: Kernel, kind: Type) -> Type:
+    """A type, of classes with the module that they are from."""
+    home = k.home_of(kind) if kind else None
+    return f"{home.name}:{kind}" if home and kind in home.classes else kind
+
+
+def bases(k: Kernel, kind: Type) -> Iterator[tuple[Kernel, str]]:
+    """A class, and those that it is derived from."""
+    while kind and ":" in kind:
+        module, name = kind.split(":")
+        home = kernel(k.root, module)
+        assert home is not None
+        yield home, name
+        parents = home.classes[name].bases
+        kind = qualified(home, ast.unparse(parents[0])) if parents else None
