@@ -16,7 +16,7 @@ import re
 from pathlib import Path
 
 from inference import constants, variables
-from kernel_sources import IN_C, MERGED, POINTERS, SCALARS, Kernel, marks
+from kernel_sources import IN_C, MERGED, POINTERS, SCALARS, Kernel, Type, kernels, marks
 
 DECLARED = {
     f"cython.{mark}" for mark in ("ccall", "cfunc", "nogil", "final")
@@ -83,6 +83,35 @@ def with_methods(k: Kernel) -> list[str]:
     return lines
 
 
+@functools.cache
+def names_in_c(root: Path, module: str) -> set[str]:
+    """What C knows of a kernel by itself: functions, classes and constants."""
+    k = Kernel(root, module)
+    if module in IN_C:
+        return set(re.findall(r"\w+", k.header))
+    by_themselves = re.findall(r"^cdef (?!class)(.*)$", k.header, re.MULTILINE)
+    functions = {name for name, f in k.functions.items() if signature(k, f)}
+    return functions | set(k.fields) | set(own_numbers(k)) | set(re.findall(r"\w+", " ".join(by_themselves)))
+
+
+def cimported(k: Kernel) -> dict[str, str]:
+    """What C imports of all that a kernel does, and from where."""
+    kernels_ = set(kernels(k.root))
+    own = {
+        name: home for name, home in k.homes.items() if home in kernels_ and name in names_in_c(k.root, home)
+    }
+    return own | {name: LIBRARY[home] for name, home in k.homes.items() if home in LIBRARY}
+
+
+def own_numbers(k: Kernel) -> dict[str, Type]:
+    """The types of the constants that a kernel makes, but for those that its `.pxd` file has."""
+    told = set(re.findall(r"\w+", k.header))
+    known = constants(k.root, k.name).items()
+    return {
+        n: kind for n, kind in known if kind in SCALARS and n.isupper() and n not in told and n not in k.homes
+    }
+
+
 def declarations(root: Path, name: str) -> str:
     """What Cython reads as the `.pxd` file of a kernel."""
     k = Kernel(root, name)
@@ -92,18 +121,35 @@ def declarations(root: Path, name: str) -> str:
     lines = [*numbers(k), *with_methods(k), *own]
     words = set(re.findall(r"\w+", "\n".join(lines)))
     told = set(re.findall(r"\w+", " ".join(re.findall(r"cimport(.*)", k.header))))
-    homes = {name: k.homes[name] for name in words & k.cimported - told}
+    homes = {name: home for name, home in cimported(k).items() if name in words - told}
     homes |= dict.fromkeys(words.intersection(POINTERS), "lcpstep.pointers")
-    cimports = [f"from {LIBRARY.get(home, home)} cimport {name}" for name, home in sorted(homes.items())]
+    cimports = [f"from {home} cimport {name}" for name, home in sorted(homes.items())]
     return "\n".join(["cimport cython", *cimports, *lines, ""])
 
 
 def numbers(k: Kernel) -> list[str]:
-    """Lines that declare a kernel's constants, but for those that the `.pxd` file has or C imports."""
-    told = set(re.findall(r"\w+", k.header)) | k.cimported
-    known = constants(k.root, k.name).items()
-    return [
-        f"cdef {kind} {name}"
-        for name, kind in known
-        if kind in SCALARS and name.isupper() and name not in told
-    ]
+    """Lines that declare a kernel's constants, and those that it takes from where C does not know them."""
+    known, elsewhere = constants(k.root, k.name), cimported(k)
+    taken = {n: known.get(n) for n in k.homes if n.isupper() and n not in elsewhere}
+    return [f"cdef {kind} {n}" for n, kind in (own_numbers(k) | taken).items() if kind in SCALARS]
+
+
+def source(root: Path, name: str) -> str:
+    """A kernel as Cython reads it: what C knows is cimported, nothing declared again; lines stay where they are."""
+    k = Kernel(root, name)
+    lines, in_c = k.text.split("\n"), cimported(k)
+    for node in ast.walk(k.tree):
+        if isinstance(node, ast.ClassDef | ast.FunctionDef) and "cython.ufunc" not in marks(node):
+            for mark in node.decorator_list:
+                if ast.unparse(mark) in DECLARED:
+                    lines[mark.lineno - 1] = ""
+    for node in k.tree.body:
+        if isinstance(node, ast.ImportFrom):
+            names = [(ast.unparse(name), in_c.get(name.asname or name.name)) for name in node.names]
+            taken = [f"from cython.cimports.{home} import {name}" for name, home in names if home]
+            left = [name for name, home in names if not home]
+            lines[node.lineno - 1 : node.end_lineno] = [""] * (node.end_lineno - node.lineno + 1)
+            lines[node.lineno - 1] = "; ".join(
+                [*taken, *[f"from {node.module} import {', '.join(left)}"] * bool(left)]
+            )
+    return "\n".join(lines)

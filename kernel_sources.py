@@ -28,7 +28,7 @@ Type = str | None  # as Cython writes it; of classes, where several modules meet
 class Kernel:
     """A kernel's source, and what its names stand for.
 
-    homes       the module that each name is imported from;  cimported   those that C imports
+    homes       the module that each name is imported from
     classes, functions   by name
     fields      of each class, as far as the `.pxd` file tells them
     """
@@ -39,14 +39,10 @@ class Kernel:
         self.text = self.path.read_text(encoding="utf-8")
         self.header = read(self.path.with_suffix(".pxd"))
         self.tree = ast.parse(self.text)
-        self.homes: dict[str, str] = {}
-        self.cimported: set[str] = set()
-        for module, names, in_c in imports(self.tree):
-            self.homes |= dict.fromkeys(names, module)
-            self.cimported |= set(names) if in_c else set()
+        imports = [node for node in self.tree.body if isinstance(node, ast.ImportFrom)]
+        self.homes = {name.asname or name.name: str(node.module) for node in imports for name in node.names}
         for module, names in re.findall(r"^from (\S+) cimport (.+)$", self.header, re.MULTILINE):
             self.homes |= dict.fromkeys(re.split(r",\s*", names), module)
-            self.cimported |= set(re.split(r",\s*", names))
         self.classes = {node.name: node for node in self.tree.body if isinstance(node, ast.ClassDef)}
         self.functions = functions_of(self.tree)
         self.methods = {name: functions_of(node) for name, node in self.classes.items()}
@@ -57,12 +53,16 @@ class Kernel:
         if isinstance(annotation, ast.Constant) and annotation.value is None:
             return "void"
         if isinstance(annotation, ast.Name):
-            known = annotation.id in self.classes or annotation.id in self.cimported
-            return WORDS.get(annotation.id) or (annotation.id if known else None)
+            return WORDS.get(annotation.id) or (annotation.id if self.knows(annotation.id) else None)
         if isinstance(annotation, ast.Subscript) and ast.unparse(annotation.value) == "tuple":
             kinds = [self.type_of(kind) for kind in getattr(annotation.slice, "elts", [])]
             return f"({', '.join(map(str, kinds))})" if kinds and set(kinds) <= set(SCALARS) else None
         return None
+
+    def knows(self, name: str) -> bool:
+        """Whether a name is that of a kernel's class."""
+        home = self.home_of(name)
+        return home is not None and name in home.fields
 
     def home_of(self, name: str) -> Kernel | None:
         """The kernel that a name is from; None: of no kernel."""
@@ -77,6 +77,7 @@ def kernel(root: Path, name: str) -> Kernel | None:
     return Kernel(root, name) if name.startswith("lcpstep.") and path.exists() else None
 
 
+@functools.cache
 def kernels(root: Path) -> list[str]:
     """The names of all kernels."""
     files = sorted(root.glob("lcpstep/**/*.py"))
@@ -87,14 +88,6 @@ def kernels(root: Path) -> list[str]:
 def read(path: Path) -> str:
     """The text of a file, none where there is none."""
     return path.read_text(encoding="utf-8") if path.exists() else ""
-
-
-def imports(tree: ast.Module) -> Iterator[tuple[str, list[str], bool]]:
-    """Modules that a file imports from, the names, and whether C imports them."""
-    for node in tree.body:
-        for inner in node.body if isinstance(node, ast.If) else [node]:
-            if isinstance(inner, ast.ImportFrom) and inner.module:
-                yield inner.module, [name.asname or name.name for name in inner.names], inner is not node
 
 
 def functions_of(node: ast.Module | ast.ClassDef) -> dict[str, ast.FunctionDef]:

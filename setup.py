@@ -5,7 +5,6 @@ python setup.py build_ext --inplace     after a change: compiles what it concern
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import importlib.util
 import itertools
@@ -131,7 +130,7 @@ def digest(ext: Module) -> str:
 
 
 def in_c(source: str) -> str:
-    """The file that Cython reads in the place of a source: lines are the same, imports those of C (`cimporting`)."""
+    """The file that Cython reads in the place of a source: see `declarations.source`."""
     return source if source.endswith(".pyx") else f"{SOURCES}/{source}"
 
 
@@ -139,7 +138,7 @@ def write_sources() -> None:
     """What Cython reads: kernels, and their declarations, as packages of their own."""
     for name in kernel_sources.kernels(HERE):
         file = Path(name.replace(".", "/"))
-        put(file.with_suffix(".py"), cimporting((HERE / file).with_suffix(".py").read_text(encoding="utf-8")))
+        put(file.with_suffix(".py"), declarations.source(HERE, name))
         put(file.with_suffix(".pxd"), declarations.declarations(HERE, name))
         for package in list(file.parents)[:-1]:
             put(package / "__init__.py", "")
@@ -151,28 +150,6 @@ def put(file: Path, text: str) -> None:
     if kernel_sources.read(place) != text or not place.exists():
         place.parent.mkdir(parents=True, exist_ok=True)
         place.write_text(text, encoding="utf-8")
-
-
-def cimporting(text: str) -> str:
-    """A kernel in which what it imports for where it is not compiled is cimported, and nothing is declared again."""
-    lines = text.split("\n")
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.ClassDef | ast.FunctionDef) and "cython.ufunc" not in kernel_sources.marks(
-            node
-        ):
-            for mark in node.decorator_list:
-                if ast.unparse(mark) in declarations.DECLARED:
-                    lines[mark.lineno - 1] = ""
-    for block in ast.parse(text).body:
-        uncompiled = isinstance(block, ast.If) and ast.unparse(block.test) == "not cython.compiled"
-        if not uncompiled or not isinstance(block.body[0], ast.ImportFrom):
-            continue
-        lines[block.lineno - 1 : block.end_lineno] = [""] * (block.end_lineno - block.lineno + 1)
-        for node in block.body:
-            home = "libc.math" if node.module == "math" else node.module
-            names = ", ".join(ast.unparse(name) for name in node.names)
-            lines[node.lineno - 1] = f"from cython.cimports.{home} import {names}"
-    return "\n".join(lines)
 
 
 def has_compiler() -> bool:

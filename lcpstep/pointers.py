@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 try:
-    import cython  # noqa: F401
+    import cython
 except ImportError as error:
     raise ImportError(
         "lcpstep is not built: install it (python -m pip install -e .), or install Cython to run it uncompiled"

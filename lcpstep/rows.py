@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.pointers import Doubles, abs, after, bits, inf, max, min
+from lcpstep.pointers import Doubles, abs, after, bits, inf, max, min
 
 MAGNITUDE = 0x7FFFFFFFFFFFFFFF  # all bits of a double but its sign
 

@@ -10,16 +10,14 @@ for calculating the exact Hausdorff distance, IEEE Trans. Pattern Anal. Mach. In
 
 from __future__ import annotations
 
+from math import hypot, sqrt
 from typing import Any
 
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from math import hypot, sqrt
-
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.pointers import Doubles, Indices, max, min
+from lcpstep.arrays import doubles, indices
+from lcpstep.pointers import Doubles, Indices, max, min
 
 RESOLUTION = 1e-6  # of the distance
 ROUNDING = 4e-16  # of the size of the graphs: neighbouring numbers, which cannot be halved, lie 3.2e-16 apart

@@ -7,9 +7,8 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices, small_numbers
-    from lcpstep.pointers import Doubles, Flags, Indices, abs
+from lcpstep.arrays import doubles, indices, small_numbers
+from lcpstep.pointers import Doubles, Flags, Indices, abs
 
 NEITHER, PAIR, SKIP = 0, 1, 2  # where a cell's value comes from: drop a's last, pair both, drop b's last
 

@@ -5,16 +5,14 @@ growth_k = log |J_k e_{k-1}|,    e_k = J_k e_{k-1} / |J_k e_{k-1}|
 
 from __future__ import annotations
 
+from math import log, sqrt
 from typing import Any
 
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from math import log, sqrt
-
-    from lcpstep.arrays import doubles
-    from lcpstep.pointers import Doubles, after, nan
+from lcpstep.arrays import doubles
+from lcpstep.pointers import Doubles, after, nan
 
 
 def growth_along(derivatives: Any, direction: Any) -> Any:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
+from math import floor
 from typing import Any
 
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from math import floor
-
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.pointers import Doubles, after, inf, max, min, whole
+from lcpstep.arrays import doubles, indices
+from lcpstep.pointers import Doubles, after, inf, max, min, whole
 
 BINS = 4  # parts of the table for each of its cells, by which a time finds its own
 NEXT = 4  # cells in a row that are looked at first

@@ -17,13 +17,11 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles
+from lcpstep.audit.cells import Cells
 from lcpstep.audit.limits import ERRORS, SLACK, TIMES
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.audit.cells import Cells
-    from lcpstep.kernels.function import Function
-    from lcpstep.pointers import Doubles, abs, inf, max, min, nan
+from lcpstep.kernels.function import Function
+from lcpstep.pointers import Doubles, abs, inf, max, min, nan
 
 DEEPEST, MOST = 28, 256  # halvings of a window in a row, and windows that one may become
 

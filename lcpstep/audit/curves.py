@@ -10,12 +10,11 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices, small_numbers
-    from lcpstep.audit.cells import Cells
-    from lcpstep.audit.clear import Gap, between_corners, late, open_between
-    from lcpstep.kernels.function import Function
-    from lcpstep.pointers import Doubles, Flags, Indices, abs, after, indices_after, inf, max, min
+from lcpstep.arrays import doubles, indices, small_numbers
+from lcpstep.audit.cells import Cells
+from lcpstep.audit.clear import Gap, between_corners, late, open_between
+from lcpstep.kernels.function import Function
+from lcpstep.pointers import Doubles, Flags, Indices, abs, after, indices_after, inf, max, min
 
 ROUNDING = 1.1e-13  # of the numbers that a gap is made of
 SECOND = 1e-15  # of them, times how large the second differences' factor is

@@ -2,30 +2,27 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import Any
 
 import cython
 
+from lcpstep.arrays import doubles, small_numbers
+from lcpstep.audit.clear import (
+    DEEPEST,
+    MOST,
+    beside,
+    between_corners,
+    late,
+    open_between,
+    rise,
+    same_time,
+)
 from lcpstep.audit.limits import ERRORS, PRESSED, ROUNDED, SLACK, UNKNOWN
-
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.audit.clear import (
-        DEEPEST,
-        MOST,
-        beside,
-        between_corners,
-        late,
-        open_between,
-        rise,
-        same_time,
-    )
-    from lcpstep.audit.parting import above, above_at_ends, parts_at_ends, rises, swung
-    from lcpstep.audit.swing import Swing, driven
-    from lcpstep.events.flight.motion import Flight, leave_from
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan
+from lcpstep.audit.parting import above, above_at_ends, parts_at_ends, rises, swung
+from lcpstep.audit.swing import Swing, driven
+from lcpstep.events.flight.motion import Flight, leave_from
+from lcpstep.pointers import Doubles, abs, after, inf, max, min, nan
 
 PRESSING = 1e-14  # of the accelerations
 BEFORE = 0.5  # of how long an event lasts: windows of closed contacts end so long before it

@@ -7,11 +7,9 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, small_numbers
+from lcpstep.pointers import Doubles, Flags, inf, min, whole
 from lcpstep.trajectory import Kind
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.pointers import Doubles, Flags, inf, min, whole
 
 IMPACT, STICK = float(Kind.IMPACT), float(Kind.STICK)
 ACCUMULATION, RELEASE = float(Kind.ACCUMULATION), float(Kind.RELEASE)

@@ -7,13 +7,11 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.audit.clear import rise
 from lcpstep.audit.limits import ROUNDED, SLACK
-
-if not cython.compiled:
-    from lcpstep.audit.clear import rise
-    from lcpstep.audit.swing import Swing
-    from lcpstep.events.flight.motion import Flight
-    from lcpstep.pointers import abs, inf, max, min
+from lcpstep.audit.swing import Swing
+from lcpstep.events.flight.motion import Flight
+from lcpstep.pointers import abs, inf, max, min
 
 DEEP = 4  # halvings in a row of windows that are above the obstacle
 

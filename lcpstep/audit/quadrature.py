@@ -7,11 +7,10 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.kernels.acceleration import free_acceleration
-    from lcpstep.kernels.model import Model
-    from lcpstep.pointers import Doubles, abs, after, max, nan
+from lcpstep.arrays import doubles, small_numbers
+from lcpstep.kernels.acceleration import free_acceleration
+from lcpstep.kernels.model import Model
+from lcpstep.pointers import Doubles, abs, after, max, nan
 
 
 @cython.ccall

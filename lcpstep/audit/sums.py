@@ -6,11 +6,9 @@ from typing import Any
 
 import cython
 
+from lcpstep.arrays import doubles, small_numbers
 from lcpstep.audit.limits import JUMP, RELEASED
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.pointers import Doubles, Flags, abs, inf, max, min
+from lcpstep.pointers import Doubles, Flags, abs, inf, max, min
 
 
 @cython.ccall

@@ -8,19 +8,16 @@ damper the first term is a parabola. Other motions are left to `motion.Oscillati
 
 from __future__ import annotations
 
+from math import cos, hypot, sin, sqrt
 from typing import Any
 
 import cython
 
+from lcpstep.audit.cells import Cells
+from lcpstep.audit.clear import Gap
 from lcpstep.audit.limits import SLACK
-
-if not cython.compiled:
-    from math import cos, hypot, sin, sqrt
-
-    from lcpstep.audit.cells import Cells
-    from lcpstep.audit.clear import Gap
-    from lcpstep.events.flight.motion import Flight, absolute
-    from lcpstep.pointers import abs, nan
+from lcpstep.events.flight.motion import Flight, absolute
+from lcpstep.pointers import abs, nan
 
 
 class Swing(Gap):

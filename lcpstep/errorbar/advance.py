@@ -13,20 +13,17 @@ does. Source: B. Mirtich, Impulse-based dynamic simulation of rigid body systems
 
 from __future__ import annotations
 
+from math import acos, atan2, cos, exp, floor, hypot, pi, sin, sqrt
 from typing import Any
 
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles
 from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.status import BUFFER_FULL, DONE, STEP_TOO_SMALL
+from lcpstep.pointers import inf, max, min
 from lcpstep.trajectory import Kind
-
-if not cython.compiled:
-    from math import acos, atan2, cos, exp, floor, hypot, pi, sin, sqrt
-
-    from lcpstep.arrays import doubles
-    from lcpstep.pointers import inf, max, min
 
 IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in list(Kind)[:4])
 DEGREE, SHORT = 16, 0.5  # of the series, and the phase up to which it is taken

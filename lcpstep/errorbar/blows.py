@@ -10,6 +10,7 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
 from lcpstep.errorbar.layout import (
     ANOTHER,
     FIRST,
@@ -26,11 +27,8 @@ from lcpstep.errorbar.layout import (
     START,
     STOP,
 )
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.errorbar.matching import ALIKE, NEAR, Log
-    from lcpstep.pointers import Doubles, Indices, abs, inf, max, min
+from lcpstep.errorbar.matching import ALIKE, NEAR, Log
+from lcpstep.pointers import Doubles, Indices, abs, inf, max, min
 
 
 def matched(a: Log, b: Log, contact: int, weak: float, resolution: float) -> tuple[Any, Any, Any, Any, Any]:

@@ -8,11 +8,9 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles
 from lcpstep.gauss import gauss
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.pointers import Doubles
+from lcpstep.pointers import Doubles
 
 EARLIER, LATER = (float(x) for x in gauss(2)[0])  # nodes in an interval (0, 1)
 NODES = 2

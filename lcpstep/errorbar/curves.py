@@ -10,9 +10,8 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.pointers import Doubles, Flags, abs, after, inf, max, min
+from lcpstep.arrays import doubles, small_numbers
+from lcpstep.pointers import Doubles, Flags, abs, after, inf, max, min
 
 ROUNDING = 4.0  # last digits of what a number is made of
 EPS = 2.220446049250313e-16

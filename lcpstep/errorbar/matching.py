@@ -7,12 +7,10 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
 from lcpstep.errorbar.layout import IMPULSE, JUMP, LATE_BY, OF_PAIR, START, STOP
+from lcpstep.pointers import Doubles, Indices, abs, inf, max, min
 from lcpstep.trajectory import Kind
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.pointers import Doubles, Indices, abs, inf, max, min
 
 IMPACT, ACCUMULATION = (int(kind) for kind in list(Kind)[:2])
 ALIKE = 0.5  # of the larger jump, by which those of partners may differ

@@ -7,15 +7,13 @@ zero times infinity is none, there is no bound. They are functions of each eleme
 
 from __future__ import annotations
 
+from math import ceil, floor
 from typing import Any
 
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from math import ceil, floor
-
-    from lcpstep.pointers import abs, inf, max, min
+from lcpstep.pointers import abs, inf, max, min
 
 OUT = 2.0**-51  # relative; more than rounding
 TINY = 1e-300

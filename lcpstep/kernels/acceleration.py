@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import mass, total_force
-    from lcpstep.kernels.linear import positive_definite, solve_definite
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import Doubles
+from lcpstep.kernels.dynamics import mass, total_force
+from lcpstep.kernels.linear import positive_definite, solve_definite
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import Doubles
 
 
 def free_acceleration(m: Model, t: float, q: Doubles, v: Doubles, M: Doubles, y: Doubles, a: Doubles) -> bool:

@@ -11,8 +11,7 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices, small_numbers
+from lcpstep.arrays import doubles, indices, small_numbers
 
 
 @cython.ccall

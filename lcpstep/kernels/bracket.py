@@ -19,8 +19,7 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.pointers import abs, inf, max, min
+from lcpstep.pointers import abs, inf, max, min
 
 MOST = 200  # places looked at
 LITTLE = 1e-9  # of x: steps no longer than this shrink, unless the function is lost in rounding

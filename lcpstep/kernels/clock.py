@@ -6,18 +6,16 @@ acceleration, or an obstacle's velocity, may jump; between two of them lies a sm
 
 from __future__ import annotations
 
+from math import floor
 from typing import Any
 
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from math import floor
-
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.pointers import abs, inf, max, min
+from lcpstep.arrays import doubles
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.tally import Tally
+from lcpstep.pointers import abs, inf, max, min
 
 RESOLUTION = 2.0**-52
 NOISE = 64 * RESOLUTION  # relative to the terms of a sum: what rounding may leave of it

@@ -14,11 +14,10 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.function import Function
-    from lcpstep.kernels.vectors import clear, copy
-    from lcpstep.pointers import Doubles, after, indices_after, inf
+from lcpstep.arrays import doubles, indices
+from lcpstep.kernels.function import Function
+from lcpstep.kernels.vectors import clear, copy
+from lcpstep.pointers import Doubles, after, indices_after, inf
 
 
 class Coefficients:

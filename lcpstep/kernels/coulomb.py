@@ -26,12 +26,11 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.vectors import clear, copy, largest
-    from lcpstep.lcp.kernel import solve_small
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, abs, after, max, min
+from lcpstep.arrays import doubles, indices
+from lcpstep.kernels.vectors import clear, copy, largest
+from lcpstep.lcp.kernel import solve_small
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import Doubles, abs, after, max, min
 
 DEGENERATE = 1e-13  # determinant, relative to its terms, below which normal and tangent are one direction
 ROUNDING = 1e-13  # relative: a sliding velocity this small has no sign

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.record import Record
 from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
-
-if not cython.compiled:
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.tally import Tally
 
 DUE, AHEAD, ARRIVED = range(3)  # stages
 

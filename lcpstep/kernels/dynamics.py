@@ -7,14 +7,13 @@ Outputs are written into the arrays handed in; matrices lie row by row.
 
 from __future__ import annotations
 
+from math import cos, pow, sin, sqrt
+
 import cython
 
-if not cython.compiled:
-    from math import cos, pow, sin, sqrt
-
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy, product, size_of_product
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import copy, product, size_of_product
+from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
 # Fourth-order differences that stand in for a missing bias: the longest way they take; the third difference, relative
 # to the terms of the rate, that they may show, and what a shorter step aims at; how often it is shortened, and beyond

@@ -15,14 +15,13 @@ chapter 5; W. J. Stronge, Impact Mechanics (Cambridge 2000), chapters 3 and 5.
 
 from __future__ import annotations
 
+from math import sqrt
+
 import cython
 
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.kernels.coulomb import ContactProblem, solve_contacts
-    from lcpstep.kernels.vectors import clear, copy
-    from lcpstep.pointers import Doubles, abs, inf, max, min
+from lcpstep.kernels.coulomb import ContactProblem, solve_contacts
+from lcpstep.kernels.vectors import clear, copy
+from lcpstep.pointers import Doubles, abs, inf, max, min
 
 PHASES = 4  # of a single impact: sliding, then rest or sliding back, the end of compression between any two
 LOCKED = 1e-13  # of W_NN: a contact that sticks and has less mobility is wedged; of e: a smaller one is none

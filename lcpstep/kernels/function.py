@@ -14,9 +14,8 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.pointers import Doubles, after, callback_at, nan
+from lcpstep.arrays import doubles, indices
+from lcpstep.pointers import Doubles, after, callback_at, nan
 
 
 class Function:

@@ -6,12 +6,11 @@ off only beyond the sizes that mechanisms have.
 
 from __future__ import annotations
 
+from math import sqrt
+
 import cython
 
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.pointers import Doubles, Indices, abs
+from lcpstep.pointers import Doubles, Indices, abs
 
 DEPENDENT = 2.0**-50  # relative rounding: what a row must have more of that the rows before it have not
 

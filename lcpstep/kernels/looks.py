@@ -7,19 +7,17 @@ in states q, v (n, n_q), contiguous.
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import Any
 
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.dynamics import gap_rates, gaps, mass, total_force
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy, finite, size_of_product
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
+from lcpstep.arrays import doubles
+from lcpstep.kernels.dynamics import gap_rates, gaps, mass, total_force
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import copy, finite, size_of_product
+from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
 
 
 def lies_inside(m: Model, t: Any, q: Any, looks: int, share: float, towards: bool) -> bool:

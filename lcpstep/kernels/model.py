@@ -13,10 +13,9 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.function import Function
-    from lcpstep.pointers import after
+from lcpstep.arrays import doubles
+from lcpstep.kernels.function import Function
+from lcpstep.pointers import after
 
 
 class Model:

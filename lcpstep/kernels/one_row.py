@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.record import Record
-    from lcpstep.pointers import Doubles
+from lcpstep.kernels.record import Record
+from lcpstep.pointers import Doubles
 
 
 def keep_one(record: Record, t: float, length: float, q: float, v: float, impulse: Doubles) -> None:

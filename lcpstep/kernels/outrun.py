@@ -6,19 +6,17 @@ at of each.
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import Any
 
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.dynamics import gap_rates, total_force
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.arrays import doubles
+from lcpstep.kernels.dynamics import gap_rates, total_force
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import Doubles, abs, after, max
 
 
 @cython.ccall

@@ -7,12 +7,11 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.acceleration import divide_by_mass, free_acceleration
-    from lcpstep.kernels.dynamics import bias, gap_rates
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import after, inf
+from lcpstep.arrays import doubles
+from lcpstep.kernels.acceleration import divide_by_mass, free_acceleration
+from lcpstep.kernels.dynamics import bias, gap_rates
+from lcpstep.kernels.vectors import copy, product
+from lcpstep.pointers import after, inf
 
 
 class Point:

@@ -7,12 +7,11 @@ Source: W. Press et al., Numerical Recipes, section 5.6.
 
 from __future__ import annotations
 
+from math import sqrt
+
 import cython
 
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.pointers import inf
+from lcpstep.pointers import inf
 
 
 def first_zero(g: float, u: float, half: float) -> float:

@@ -9,12 +9,10 @@ from typing import Any
 
 import cython
 
+from lcpstep.arrays import doubles
 from lcpstep.kernels.layout import COLUMNS
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.vectors import add, clear, copy
-    from lcpstep.pointers import Doubles, after, inf, whole
+from lcpstep.kernels.vectors import add, clear, copy
+from lcpstep.pointers import Doubles, after, inf, whole
 
 ROOM = 4  # rows that a step may write, besides states at given times
 

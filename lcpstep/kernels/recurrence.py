@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.pointers import Doubles, abs, max
+from lcpstep.pointers import Doubles, abs, max
 
 RETURNS = 2.0**-40  # relative deviation from proportion
 FOR_EVER = 1.0 - 2.0**-30  # of rho: nothing is lost

@@ -16,11 +16,10 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.coulomb import ContactProblem, motion_of
-    from lcpstep.kernels.vectors import clear
-    from lcpstep.lcp.kernel import solve_small
-    from lcpstep.pointers import Doubles, abs
+from lcpstep.kernels.coulomb import ContactProblem, motion_of
+from lcpstep.kernels.vectors import clear
+from lcpstep.lcp.kernel import solve_small
+from lcpstep.pointers import Doubles, abs
 
 AT_REST = 1e-12  # of the terms of a velocity, or acceleration: less is rounding
 SOLVED = 0

@@ -6,9 +6,13 @@ Source: E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equation
 
 from __future__ import annotations
 
+from math import pow, sqrt
+
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
+from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.dop853 import (
     ALL,
     DENSE,
@@ -23,14 +27,8 @@ from lcpstep.kernels.dop853 import (
     table,
 )
 from lcpstep.kernels.status import DONE, NOT_FINITE, STEP_TOO_SMALL
-
-if not cython.compiled:
-    from math import pow, sqrt
-
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.vectors import copy, finite
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min
+from lcpstep.kernels.vectors import copy, finite
+from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
 UNDERFLOW = 1e-200  # squares of errors below it have lost their digits
 SAFETY, LEAST, MOST = 0.9, 0.2, 6.0  # of the change of step

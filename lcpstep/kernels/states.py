@@ -10,13 +10,12 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.acceleration import divide_by_mass, free_acceleration
-    from lcpstep.kernels.dynamics import gap_rates, gaps, mass, total_force
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import after, max, min, nan
+from lcpstep.arrays import doubles
+from lcpstep.kernels.acceleration import divide_by_mass, free_acceleration
+from lcpstep.kernels.dynamics import gap_rates, gaps, mass, total_force
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import after, max, min, nan
 
 
 @cython.ccall

@@ -10,12 +10,11 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.coefficients import Coefficients
-    from lcpstep.kernels.coulomb import ContactProblem, motion_of, solve_contacts
-    from lcpstep.kernels.repose import infects, moves, stay
-    from lcpstep.kernels.vectors import clear
-    from lcpstep.pointers import Doubles, Indices
+from lcpstep.kernels.coefficients import Coefficients
+from lcpstep.kernels.coulomb import ContactProblem, motion_of, solve_contacts
+from lcpstep.kernels.repose import infects, moves, stay
+from lcpstep.kernels.vectors import clear
+from lcpstep.pointers import Doubles, Indices
 
 SLIDES, STICKS, GIVES_WAY, MEETS = range(4)  # what has been tried of a contact; the last one meets a blow
 

@@ -13,10 +13,9 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.vectors import largest
-    from lcpstep.pointers import Doubles, abs, max
+from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.vectors import largest
+from lcpstep.pointers import Doubles, abs, max
 
 MORE = 4.0  # times what steps have left of a velocity so far
 PLACES = 8.0  # roundings of a place: those of the stages of a step, and of where it leads

@@ -14,11 +14,10 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.dynamics import mass, total_force
-    from lcpstep.kernels.model import Model
-    from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.arrays import doubles
+from lcpstep.kernels.dynamics import mass, total_force
+from lcpstep.kernels.model import Model
+from lcpstep.pointers import Doubles, abs, after, max
 
 
 @cython.ccall

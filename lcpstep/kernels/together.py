@@ -10,11 +10,10 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import moves
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import size_of_product
-    from lcpstep.pointers import Doubles, abs, min
+from lcpstep.kernels.dynamics import moves
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import size_of_product
+from lcpstep.pointers import Doubles, abs, min
 
 TOGETHER = 64 * 2.0**-52  # of the terms of a gap, their signs left aside: smaller ones are zero to rounding
 CROSSED = 1000.0  # such roundings: so far off a contact may be while another one crosses that of its own gap

@@ -15,8 +15,7 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.pointers import abs, max, min
+from lcpstep.pointers import abs, max, min
 
 ROUNDS = 4  # parabolas
 NEARER = 0.25  # of the distance of samples, each time

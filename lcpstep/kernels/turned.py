@@ -5,21 +5,19 @@ The steps are divided into so many parts, one after the other, and the fastest t
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import Any
 
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.acceleration import factor_mass
-    from lcpstep.kernels.dynamics import gap_rates
-    from lcpstep.kernels.linear import solve_definite
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, after
+from lcpstep.arrays import doubles
+from lcpstep.kernels.acceleration import factor_mass
+from lcpstep.kernels.dynamics import gap_rates
+from lcpstep.kernels.linear import solve_definite
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import copy, product
+from lcpstep.pointers import Doubles, after
 
 
 @cython.ccall

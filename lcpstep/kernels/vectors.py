@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.pointers import Doubles, Indices, abs
+from lcpstep.pointers import Doubles, Indices, abs
 
 
 def copy(x: Doubles, y: Doubles, n: int) -> None:

@@ -10,15 +10,13 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, small_numbers
 from lcpstep.lcp.newton import STRICT
+from lcpstep.lcp.part import Part
+from lcpstep.lcp.sparse_rows import SparseRows, add_products, add_sizes
 from lcpstep.lcp.status import NOTHING, ROUNDING
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, small_numbers
-    from lcpstep.lcp.part import Part
-    from lcpstep.lcp.sparse_rows import SparseRows, add_products, add_sizes
-    from lcpstep.pointers import Doubles, Indices, abs, inf, max
-    from lcpstep.rows import copy, largest_entry
+from lcpstep.pointers import Doubles, Indices, abs, inf, max
+from lcpstep.rows import copy, largest_entry
 
 
 class Attempt:

@@ -15,11 +15,10 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.lcp.elimination import invert
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, abs, after, max
-    from lcpstep.rows import copy, dot, subtract
+from lcpstep.lcp.elimination import invert
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.rows import copy, dot, subtract
 
 DRIFT = 1e-12  # error of a direction, relative to its size, above which it is refined
 

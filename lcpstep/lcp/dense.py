@@ -8,8 +8,14 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import are_doubles, doubles, indices
+from lcpstep.lcp.enumeration import TINY, enumerate_bases, enumerate_vertices
 from lcpstep.lcp.infeasible import explained, farkas
+from lcpstep.lcp.judge import judge
+from lcpstep.lcp.kernel import solve_dense
 from lcpstep.lcp.problem import Ray, Solution, check_finite
+from lcpstep.lcp.scaling import all_finite
+from lcpstep.lcp.small import solve_closed
 from lcpstep.lcp.status import (
     ENOUGH,
     FAILED,
@@ -21,17 +27,9 @@ from lcpstep.lcp.status import (
     SOLVED,
     Status,
 )
-
-if not cython.compiled:
-    from lcpstep.arrays import are_doubles, doubles, indices
-    from lcpstep.lcp.enumeration import TINY, enumerate_bases, enumerate_vertices
-    from lcpstep.lcp.judge import judge
-    from lcpstep.lcp.kernel import solve_dense
-    from lcpstep.lcp.scaling import all_finite
-    from lcpstep.lcp.small import solve_closed
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, Indices, after, max
-    from lcpstep.rows import copy
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import Doubles, Indices, after, max
+from lcpstep.rows import copy
 
 NAMES = tuple(Status)
 NAME_OF_SOLVED = Status.SOLVED

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, abs, after
-    from lcpstep.rows import add_four, dot, subtract
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import Doubles, abs, after
+from lcpstep.rows import add_four, dot, subtract
 
 SINGULAR = 1e-14  # a pivot below this, next to entries of size one, is rounding
 TOGETHER, LARGE = 4, 40  # pivots taken off at a time of blocks of so many unknowns or more

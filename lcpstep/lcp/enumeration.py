@@ -12,14 +12,12 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.lcp.elimination import back_substitute, factorise
+from lcpstep.lcp.judge import judge
+from lcpstep.lcp.principal import clip, solve_chosen
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, SOLVED
-
-if not cython.compiled:
-    from lcpstep.lcp.elimination import back_substitute, factorise
-    from lcpstep.lcp.judge import judge
-    from lcpstep.lcp.principal import clip, solve_chosen
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, abs, max
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import Doubles, abs, max
 
 TINY = 8  # unknowns up to which vertices are few enough
 

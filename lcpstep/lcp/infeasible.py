@@ -16,17 +16,15 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles
+from lcpstep.lcp.judge import proves_infeasible
+from lcpstep.lcp.lemke import lemke
 from lcpstep.lcp.problem import Solution, is_sparse
+from lcpstep.lcp.scaling import equilibrate
 from lcpstep.lcp.status import RAY, Status
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.lcp.judge import proves_infeasible
-    from lcpstep.lcp.lemke import lemke
-    from lcpstep.lcp.scaling import equilibrate
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import after
-    from lcpstep.rows import copy
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import after
+from lcpstep.rows import copy
 
 PIVOTS = 50  # per unknown
 LARGEST = 200  # unknowns up to which the proof is looked for where the method itself gives no ray

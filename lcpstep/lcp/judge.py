@@ -17,10 +17,9 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.pointers import Doubles, abs, after, inf, max, min
-    from lcpstep.rows import dot, dot_sizes
+from lcpstep.arrays import doubles
+from lcpstep.pointers import Doubles, abs, after, inf, max, min
+from lcpstep.rows import dot, dot_sizes
 
 EPSILON = 2.220446049250313e-16
 ROUNDING = 1e-14  # relative error that may be rounding

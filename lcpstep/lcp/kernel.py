@@ -15,20 +15,18 @@ from typing import Any
 
 import cython
 
+from lcpstep.arrays import doubles
+from lcpstep.lcp.enumeration import TINY, enumerate_bases, enumerate_vertices
+from lcpstep.lcp.judge import judge, proves_infeasible
+from lcpstep.lcp.lemke import lemke
+from lcpstep.lcp.principal import exchange_indices
+from lcpstep.lcp.scaling import equilibrate
+from lcpstep.lcp.small import solve_closed
 from lcpstep.lcp.status import ENOUGH, FAILED, INFEASIBLE, PER_UNKNOWN, RAY, SOLVED, TOLERANCE
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.lcp.enumeration import TINY, enumerate_bases, enumerate_vertices
-    from lcpstep.lcp.judge import judge, proves_infeasible
-    from lcpstep.lcp.lemke import lemke
-    from lcpstep.lcp.principal import exchange_indices
-    from lcpstep.lcp.scaling import equilibrate
-    from lcpstep.lcp.small import solve_closed
-    from lcpstep.lcp.tableau import correct, mark_basis, pivot_tableau
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, abs, max, min
-    from lcpstep.rows import copy
+from lcpstep.lcp.tableau import correct, mark_basis, pivot_tableau
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import Doubles, abs, max, min
+from lcpstep.rows import copy
 
 FEW = 8  # unknowns up to which exchanges without a guess are faster than Lemke's path
 EXCHANGES = 12  # exchanges of indices granted to a guess, and to Lemke's basis if the judge refuses it

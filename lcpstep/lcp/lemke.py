@@ -18,13 +18,11 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.lcp.basis import pivot, refactorise, set_direction
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, RAY, SOLVED
-
-if not cython.compiled:
-    from lcpstep.lcp.basis import pivot, refactorise, set_direction
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import abs, after, inf, max, min
-    from lcpstep.rows import subtract
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import abs, after, inf, max, min
+from lcpstep.rows import subtract
 
 TIE = 1e-13  # values this close, relative to the largest basic value, reach zero together
 NOTHING = -1

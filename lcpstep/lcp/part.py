@@ -11,10 +11,9 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices, small_numbers
-    from lcpstep.lcp.sparse_rows import SparseRows
-    from lcpstep.pointers import Doubles, Flags, Indices
+from lcpstep.arrays import doubles, indices, small_numbers
+from lcpstep.lcp.sparse_rows import SparseRows
+from lcpstep.pointers import Doubles, Flags, Indices
 
 NOWHERE = -1
 

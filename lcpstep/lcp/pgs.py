@@ -14,13 +14,11 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
 from lcpstep.lcp.judged import residual
 from lcpstep.lcp.problem import Solution, check_finite, is_sparse
 from lcpstep.lcp.status import MAX_ITERATIONS, SOLVED, Status
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.pointers import Doubles, Indices, max
+from lcpstep.pointers import Doubles, Indices, max
 
 SWEEPS = 1000
 BETWEEN = 10  # sweeps between two visits of the judge

@@ -11,14 +11,12 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.lcp.elimination import back_substitute, factorise
+from lcpstep.lcp.judge import judge, share
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, SOLVED
-
-if not cython.compiled:
-    from lcpstep.lcp.elimination import back_substitute, factorise
-    from lcpstep.lcp.judge import judge, share
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, abs, max
-    from lcpstep.rows import copy
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import Doubles, abs, max
+from lcpstep.rows import copy
 
 REFINEMENTS = 3
 ROUNDING = 4e-16  # relative error of a row below which there is nothing to refine

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, abs, after, bits, double_of, max
-    from lcpstep.rows import largest_magnitude, raise_to
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import Doubles, abs, after, bits, double_of, max
+from lcpstep.rows import largest_magnitude, raise_to
 
 # A double x > 0 as an integer: the higher, the larger x; from bit 52 on 1022 plus the k with 2^-k x in [1/2, 1)
 INFINITE = 0x7FF0000000000000  # and beyond it what is not a number

@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.lcp.judge import judge
-    from lcpstep.pointers import Doubles, inf
+from lcpstep.lcp.judge import judge
+from lcpstep.pointers import Doubles, inf
 
 ROUNDING = 1e-14  # residual up to which Cramer's rule is accurate enough
 

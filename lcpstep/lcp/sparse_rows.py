@@ -7,9 +7,8 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.pointers import Doubles, abs
+from lcpstep.arrays import doubles, indices
+from lcpstep.pointers import Doubles, abs
 
 
 class SparseRows:

@@ -17,13 +17,11 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.lcp.judge import judge
 from lcpstep.lcp.status import MAX_ITERATIONS, RAY, SOLVED
-
-if not cython.compiled:
-    from lcpstep.lcp.judge import judge
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
-    from lcpstep.rows import add_four, copy, excesses, largest_entry, lowest_entry, multiply, ratios, subtract
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
+from lcpstep.rows import add_four, copy, excesses, largest_entry, lowest_entry, multiply, ratios, subtract
 
 SMALLEST_PIVOT = 1e-11  # relative to the largest entry of its column
 TIE = 1e-13  # values this close, relative to the largest basic value, reach zero together

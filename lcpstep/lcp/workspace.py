@@ -9,9 +9,8 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.pointers import after, indices_after
+from lcpstep.arrays import doubles, indices
+from lcpstep.pointers import after, indices_after
 
 VECTORS = 15  # rows of n + 1 numbers, and of indices of 2 n + 1:
 LISTS = 12

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.arrays import doubles, indices
 from lcpstep.maps.task import ENDS, IMPACTS, Task
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
 
 
 class Answers:

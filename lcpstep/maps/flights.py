@@ -14,16 +14,14 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.flight.contact import IMPACT, ON_THE_SURFACE, STICK
+from lcpstep.events.flight.loop import Course
+from lcpstep.events.flight.motion import Flight
+from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.status import BUFFER_FULL, DONE
+from lcpstep.maps.answers import Answers
+from lcpstep.maps.tangent import along_events, begin_tangent, carry
 from lcpstep.maps.task import INSIDE, UNREACHED, Task
-
-if not cython.compiled:
-    from lcpstep.events.flight.loop import Course
-    from lcpstep.events.flight.motion import Flight
-    from lcpstep.kernels.record import COLUMNS
-    from lcpstep.maps.answers import Answers
-    from lcpstep.maps.tangent import along_events, begin_tangent, carry
-    from lcpstep.pointers import abs, after, max
+from lcpstep.pointers import abs, after, max
 
 NO_LIMIT = 2**62
 KICKS, KICK = 3, 1e-10  # rounds of a cycle on which it is tried, and with what share of the motion's size

@@ -12,14 +12,13 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.dynamics import external_force, obstacle
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.maps.answers import Answers
-    from lcpstep.pointers import Doubles, max
-    from lcpstep.stepping.theta_method.moving import Plan
+from lcpstep.arrays import doubles
+from lcpstep.kernels.dynamics import external_force, obstacle
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import copy
+from lcpstep.maps.answers import Answers
+from lcpstep.pointers import Doubles, max
+from lcpstep.stepping.theta_method.moving import Plan
 
 
 class Lanes:

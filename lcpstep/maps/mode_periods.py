@@ -12,19 +12,17 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
+from lcpstep.events.hybrid.field import Machine, approaches, field, guard_gradient, scalar
 from lcpstep.events.hybrid.kinds import ARRIVE, NOT_SLIDING
 from lcpstep.events.hybrid.layout import SWITCH_LEAD
+from lcpstep.events.hybrid.loop import Switching
+from lcpstep.events.hybrid.state import Motion
+from lcpstep.kernels.function import Functions
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.events.hybrid.field import Machine, approaches, field, guard_gradient, scalar
-    from lcpstep.events.hybrid.loop import Switching
-    from lcpstep.events.hybrid.state import Motion
-    from lcpstep.kernels.function import Functions
-    from lcpstep.kernels.vectors import copy, largest, product
-    from lcpstep.maps.saltation.switches import Tangent, walk
-    from lcpstep.pointers import Doubles, abs, after, indices_after, max, whole
+from lcpstep.kernels.vectors import copy, largest, product
+from lcpstep.maps.saltation.switches import Tangent, walk
+from lcpstep.pointers import Doubles, abs, after, indices_after, max, whole
 
 ON_SURFACE = 1e-9  # |H|, relative to the state, that is zero: the same as for a scene that starts sliding
 UNREACHED = -1

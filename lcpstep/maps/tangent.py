@@ -14,15 +14,14 @@ from typing import Any
 
 import cython
 
+from lcpstep.arrays import doubles, indices
 from lcpstep.events.flight.contact import IMPACT, STICK
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.events.flight.motion import Flight
-    from lcpstep.events.flight.oscillator import fundamental
-    from lcpstep.events.flight.rest import alpha_at
-    from lcpstep.kernels.record import COLUMNS, Record
-    from lcpstep.pointers import Doubles, after, nan
+from lcpstep.events.flight.motion import Flight
+from lcpstep.events.flight.oscillator import fundamental
+from lcpstep.events.flight.rest import alpha_at
+from lcpstep.kernels.layout import COLUMNS
+from lcpstep.kernels.record import Record
+from lcpstep.pointers import Doubles, after, nan
 
 
 def begin_tangent(J: Doubles) -> None:

@@ -7,12 +7,11 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.acceleration import free_acceleration
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import finite, largest
-    from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.arrays import doubles
+from lcpstep.kernels.acceleration import free_acceleration
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import finite, largest
+from lcpstep.pointers import Doubles, abs, after, max
 
 
 @cython.ccall

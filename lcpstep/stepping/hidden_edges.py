@@ -13,11 +13,10 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import Doubles, Indices, abs, after, max
-    from lcpstep.stepping.theta_method.moving import Rows, State
+from lcpstep.arrays import doubles
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import Doubles, Indices, abs, after, max
+from lcpstep.stepping.theta_method.moving import Rows, State
 
 EDGE = 4.0  # times by which a row that turns smoothly may turn more in one half of a step than in the other
 

@@ -18,8 +18,7 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.pointers import abs, max, min
+from lcpstep.pointers import abs, max, min
 
 UNSURE = 0.25  # of an impulse: by so much two runs may differ about it
 

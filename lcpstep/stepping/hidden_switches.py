@@ -10,13 +10,13 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.vectors import add, clear, largest, product
-    from lcpstep.pointers import Doubles, Indices, abs, after, indices_after, max, min
-    from lcpstep.stepping.hidden_forces import gives_out, hidden, late
-    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
-    from lcpstep.stepping.theta_method.row_impulses import NO_APPROACH, size_of_rate
+from lcpstep.arrays import doubles, indices
+from lcpstep.kernels.vectors import add, clear, largest, product
+from lcpstep.pointers import Doubles, Indices, abs, after, indices_after, max, min
+from lcpstep.stepping.hidden_forces import gives_out, hidden, late
+from lcpstep.stepping.steps import NO_APPROACH
+from lcpstep.stepping.theta_method.moving import Plan, Rows, State
+from lcpstep.stepping.theta_method.row_impulses import size_of_rate
 
 ONE, FIRST, SECOND = range(3)  # the step, its halves
 SHARED = 4.0  # rows that do not depend on each other make together a quarter of what the impulse of one makes

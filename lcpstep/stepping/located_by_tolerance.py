@@ -10,26 +10,24 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.dynamics import gaps
+from lcpstep.kernels.layout import COLUMNS
+from lcpstep.kernels.vectors import distance, largest
+from lcpstep.pointers import abs, after, inf, max, min, whole
 from lcpstep.stepping.adaptive import REACHED
+from lcpstep.stepping.hidden_forces import hidden, late
 from lcpstep.stepping.located_parts import Parts
-
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import gaps
-    from lcpstep.kernels.record import COLUMNS
-    from lcpstep.kernels.vectors import distance, largest
-    from lcpstep.pointers import abs, after, inf, max, min, whole
-    from lcpstep.stepping.hidden_forces import hidden, late
-    from lcpstep.stepping.pieces.codes import (
-        BUFFER_FULL,
-        CLOSED,
-        FINISHED,
-        IMPACT,
-        SAME_TIME,
-        STOPPED,
-        TOO_MANY_EVENTS,
-    )
-    from lcpstep.stepping.pieces.times import driven_by
-    from lcpstep.stepping.step_control import follow_on, stamp
+from lcpstep.stepping.pieces.codes import (
+    BUFFER_FULL,
+    CLOSED,
+    FINISHED,
+    IMPACT,
+    SAME_TIME,
+    STOPPED,
+    TOO_MANY_EVENTS,
+)
+from lcpstep.stepping.pieces.times import driven_by
+from lcpstep.stepping.step_control import follow_on, stamp
 
 EARLY = 1.0 / 32.0  # of a step: an event before it leaves nothing to compare
 NEAR = 3.0  # errors of a gap: from where on it may have closed

@@ -11,20 +11,18 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
+from lcpstep.kernels.layout import COLUMNS
+from lcpstep.kernels.vectors import clear, copy, copy_indices, largest
+from lcpstep.pointers import Doubles, after, inf, nan, whole
 from lcpstep.stepping.adaptive import LEVELS
+from lcpstep.stepping.pieces.codes import CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
+from lcpstep.stepping.pieces.corners import find_corners
+from lcpstep.stepping.pieces.loop import Steps
+from lcpstep.stepping.pieces.smooth import invert
 from lcpstep.stepping.pieces.state import Work
+from lcpstep.stepping.pieces.switches import COLLAPSE
 from lcpstep.stepping.step_control import Control
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.record import COLUMNS
-    from lcpstep.kernels.vectors import clear, copy, copy_indices, largest
-    from lcpstep.pointers import Doubles, after, inf, nan, whole
-    from lcpstep.stepping.pieces.codes import CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
-    from lcpstep.stepping.pieces.corners import find_corners
-    from lcpstep.stepping.pieces.loop import Steps
-    from lcpstep.stepping.pieces.smooth import invert
-    from lcpstep.stepping.pieces.switches import COLLAPSE
 
 MATRICES = ["A_inverse", "AG", "WA"]  # of a plan, that depend on h
 OWN = LEVELS + 2  # place of those of a part as long as none

@@ -30,21 +30,18 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
+from lcpstep.kernels.clock import Clock
+from lcpstep.kernels.vectors import copy, copy_indices, distance, largest
+from lcpstep.pointers import abs, after, inf, max, min
 from lcpstep.stepping.adaptive import LEVELS
-from lcpstep.stepping.step_control import Control
+from lcpstep.stepping.hidden_edges import Edges, dip
+from lcpstep.stepping.hidden_switches import Switches
+from lcpstep.stepping.step_control import LEAST_SHARE, Control, stamp
 from lcpstep.stepping.steps import LATE
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.clock import Clock
-    from lcpstep.kernels.vectors import copy, copy_indices, distance, largest
-    from lcpstep.pointers import abs, after, inf, max, min
-    from lcpstep.stepping.hidden_edges import Edges, dip
-    from lcpstep.stepping.hidden_switches import Switches
-    from lcpstep.stepping.step_control import LEAST_SHARE, stamp
-    from lcpstep.stepping.theta_method.responses import refit
-    from lcpstep.stepping.theta_method.theta_loop import Steps, look
+from lcpstep.stepping.theta_method.responses import refit
+from lcpstep.stepping.theta_method.theta_loop import Steps, look
 
 OWN = LEVELS + 2  # place of the matrices of a step that is as long as none; those of its halves come next
 

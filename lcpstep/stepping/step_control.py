@@ -18,21 +18,19 @@ S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), sect
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import ldexp
 from typing import Any
 
 import cython
 import numpy as np
 
+from lcpstep.arrays import indices
+from lcpstep.kernels.course import AHEAD, ARRIVED, Course
+from lcpstep.kernels.layout import COLUMNS
+from lcpstep.kernels.record import Record
+from lcpstep.pointers import abs, inf, max, min
 from lcpstep.stepping.adaptive import LEVELS, NOISE, PAUSED, PLENTY, REACHED, TOO_SMALL, WANTED, sizes
 from lcpstep.stepping.steps import RESOLUTION
-
-if not cython.compiled:
-    from math import ldexp
-
-    from lcpstep.arrays import indices
-    from lcpstep.kernels.course import AHEAD, ARRIVED, Course
-    from lcpstep.kernels.record import COLUMNS, Record
-    from lcpstep.pointers import abs, inf, max, min
 
 ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
 ROWS = 8  # that a step may keep besides the times asked for

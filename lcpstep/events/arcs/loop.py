@@ -15,28 +15,26 @@ from typing import Any
 
 import cython
 
+from lcpstep.arrays import doubles, indices
+from lcpstep.events.arcs.motion import (
+    Arc,
+    belt_slip,
+    bend_at,
+    bends,
+    look,
+    pay,
+    rebase,
+    rise,
+    set_out,
+    state_at,
+)
 from lcpstep.events.codes import REVERSE, SLIP, STAYS_CLOSED, STICK_TANGENT
 from lcpstep.events.flight.contact import SLACK
+from lcpstep.kernels.clock import NOISE, RESOLUTION
+from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
+from lcpstep.kernels.quadratic import first_zero
 from lcpstep.kernels.status import DONE
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.events.arcs.motion import (
-        Arc,
-        belt_slip,
-        bend_at,
-        bends,
-        look,
-        pay,
-        rebase,
-        rise,
-        set_out,
-        state_at,
-    )
-    from lcpstep.kernels.clock import NOISE, RESOLUTION
-    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
-    from lcpstep.kernels.quadratic import first_zero
-    from lcpstep.pointers import abs, inf, max, min
+from lcpstep.pointers import abs, inf, max, min
 
 STILL = 100.0  # tolerances: a sliding velocity this small at the start is zero
 

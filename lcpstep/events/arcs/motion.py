@@ -12,18 +12,16 @@ f and slip are constant and harmonic. Sliding velocity and friction rise from th
 
 from __future__ import annotations
 
+from math import cos, hypot, sin
 from typing import Any
 
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from math import cos, hypot, sin
-
-    from lcpstep.arrays import doubles
-    from lcpstep.events.flight.oscillator import envelope, fundamental
-    from lcpstep.kernels.clock import NOISE, Clock
-    from lcpstep.pointers import abs, after, inf
+from lcpstep.arrays import doubles
+from lcpstep.events.flight.oscillator import envelope, fundamental
+from lcpstep.kernels.clock import NOISE, Clock
+from lcpstep.pointers import abs, after, inf
 
 
 class Arc(Clock):

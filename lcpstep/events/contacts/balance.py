@@ -12,16 +12,14 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN
+from lcpstep.events.contacts.equations import force_noise, measure
+from lcpstep.events.contacts.modes import adopt_modes, decide
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.contacts.surfaces import touching
+from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints
 from lcpstep.kernels.status import DONE, NOT_FINITE
-
-if not cython.compiled:
-    from lcpstep.events.contacts.equations import force_noise, measure
-    from lcpstep.events.contacts.modes import adopt_modes, decide
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.contacts.surfaces import touching
-    from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints
-    from lcpstep.kernels.vectors import clear, product
-    from lcpstep.pointers import abs, min
+from lcpstep.kernels.vectors import clear, product
+from lcpstep.pointers import abs, min
 
 MOMENT, SHORTEST, SHORTER = 1e-4, 1e-9, 0.1  # of the next step; and how much shorter where a hop can be told
 DOUBTFUL = 10.0  # of what an acceleration changes by in a moment: larger ones are no rounding

@@ -12,15 +12,13 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
-
-if not cython.compiled:
-    from lcpstep.events.contacts.equations import force_noise
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.contacts import accelerate_as_held, hold_modes
-    from lcpstep.events.rows.equations import size_of_acceleration
-    from lcpstep.events.rows.held import is_held
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import abs
+from lcpstep.events.contacts.equations import force_noise
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.rows.contacts import accelerate_as_held, hold_modes
+from lcpstep.events.rows.equations import size_of_acceleration
+from lcpstep.events.rows.held import is_held
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import abs
 
 MOST = 4  # contacts at rest: of more not every way is tried
 WAYS = 4  # of a contact: it sticks, leans on either edge, or carries nothing

@@ -6,46 +6,44 @@ belongs to it, and the forces of the closed contact make up for the rest.
 
 from __future__ import annotations
 
+from math import sqrt
+
 import cython
 
 from lcpstep.events.codes import OPEN, SLIDES, STICKS
-
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.events.contacts.equations import measure
-    from lcpstep.events.contacts.held import know_rows
-    from lcpstep.events.contacts.impact import find_free
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.chatter import (
-        disturbs,
-        find_over,
-        just_opened,
-        meets,
-        passes_on,
-        take_along,
-        tell_over,
-        where_interrupted,
-    )
-    from lcpstep.events.rows.contacts import (
-        gap_of,
-        gap_tolerance,
-        hold_modes,
-        measure_velocities,
-        of_tangent,
-        rubs,
-        sliding,
-        still,
-        take_velocities,
-    )
-    from lcpstep.events.rows.equations import size_of
-    from lcpstep.events.rows.held import constrain
-    from lcpstep.events.rows.keep import put_on_account
-    from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import abs, after, max, nan
+from lcpstep.events.contacts.equations import measure
+from lcpstep.events.contacts.held import know_rows
+from lcpstep.events.contacts.impact import find_free
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.rows.chatter import (
+    disturbs,
+    find_over,
+    just_opened,
+    meets,
+    passes_on,
+    take_along,
+    tell_over,
+    where_interrupted,
+)
+from lcpstep.events.rows.contacts import (
+    gap_of,
+    gap_tolerance,
+    hold_modes,
+    measure_velocities,
+    of_tangent,
+    rubs,
+    sliding,
+    still,
+    take_velocities,
+)
+from lcpstep.events.rows.equations import size_of
+from lcpstep.events.rows.held import constrain
+from lcpstep.events.rows.keep import put_on_account
+from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import copy, product
+from lcpstep.pointers import abs, after, max, nan
 
 
 def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:

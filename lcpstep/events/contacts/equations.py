@@ -5,20 +5,18 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import LEANS, SLIDES, STICKS
-
-if not cython.compiled:
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.contacts import measure_velocities
-    from lcpstep.events.rows.equations import (
-        free_motion,
-        renew_biases,
-        renew_rates,
-        respond,
-    )
-    from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.dynamics import gaps
-    from lcpstep.kernels.vectors import largest, product
-    from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.rows.contacts import measure_velocities
+from lcpstep.events.rows.equations import (
+    free_motion,
+    renew_biases,
+    renew_rates,
+    respond,
+)
+from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.dynamics import gaps
+from lcpstep.kernels.vectors import largest, product
+from lcpstep.pointers import Doubles, abs, after, max
 
 
 def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:

@@ -11,21 +11,19 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
+from lcpstep.events.contacts.equations import force_noise, measure_friction, measure_gaps, share_left
+from lcpstep.events.contacts.held import right_hand_side
+from lcpstep.events.contacts.hops import begin_hops, first_landing
+from lcpstep.events.contacts.loose import forget_strays, notice
+from lcpstep.events.contacts.state import GUARDS, Rubbing
+from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
+from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
+from lcpstep.events.rows.equations import renew_rates, size_of
+from lcpstep.events.rows.held import is_held
+from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.dop853 import STAGES
-
-if not cython.compiled:
-    from lcpstep.events.contacts.equations import force_noise, measure_friction, measure_gaps, share_left
-    from lcpstep.events.contacts.held import right_hand_side
-    from lcpstep.events.contacts.hops import begin_hops, first_landing
-    from lcpstep.events.contacts.loose import forget_strays, notice
-    from lcpstep.events.contacts.state import GUARDS, Rubbing
-    from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
-    from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
-    from lcpstep.events.rows.equations import renew_rates, size_of
-    from lcpstep.events.rows.held import is_held
-    from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.vectors import copy, largest, product
-    from lcpstep.pointers import Doubles, abs, after, max, min
+from lcpstep.kernels.vectors import copy, largest, product
+from lcpstep.pointers import Doubles, abs, after, max, min
 
 SAMPLES = DEGREE + 1 + CHECKS
 PARTS = 64  # of a step, at most, in which guards are polynomials

@@ -11,23 +11,21 @@ made larger an elastic one would gain energy, hop by hop, and never come to rest
 
 from __future__ import annotations
 
+from math import pow, sqrt
+
 import cython
 
 from lcpstep.events.codes import OPEN
-
-if not cython.compiled:
-    from math import pow, sqrt
-
-    from lcpstep.events.contacts.equations import measure_gaps
-    from lcpstep.events.contacts.held import know_rows
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.hybrid.roots import NONE
-    from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
-    from lcpstep.events.rows.equations import renew_biases, size_of
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.quadratic import first_zero
-    from lcpstep.kernels.vectors import largest, product
-    from lcpstep.pointers import abs, after, inf, max, min, nan
+from lcpstep.events.contacts.equations import measure_gaps
+from lcpstep.events.contacts.held import know_rows
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.hybrid.roots import NONE
+from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
+from lcpstep.events.rows.equations import renew_biases, size_of
+from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.quadratic import first_zero
+from lcpstep.kernels.vectors import largest, product
+from lcpstep.pointers import abs, after, inf, max, min, nan
 
 # In place of a landing: there is none within the step; it is NONE where the gap itself is to be looked at
 NEVER = -2.0

@@ -12,23 +12,21 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import ACCUMULATION, IMPACT, JAM, JUMP, LEANS, NO_IMPULSES, OPEN, SLIDES, STICKS
+from lcpstep.events.contacts.equations import measure
+from lcpstep.events.contacts.parting import approaches, let_go, rejoin
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.rows.contacts import measure_velocities, sliding, still, stop_rows
+from lcpstep.events.rows.cycle import fades, look_back, recurs, sum_up
+from lcpstep.events.rows.held import hold_joints
+from lcpstep.events.rows.problem import fill, list_unknowns, row_of
+from lcpstep.kernels.coulomb import solve_contacts
+from lcpstep.kernels.energetic import strike_in_turn
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.recurrence import FOR_EVER, looks_back
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
-
-if not cython.compiled:
-    from lcpstep.events.contacts.equations import measure
-    from lcpstep.events.contacts.parting import approaches, let_go, rejoin
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.contacts import measure_velocities, sliding, still, stop_rows
-    from lcpstep.events.rows.cycle import fades, look_back, recurs, sum_up
-    from lcpstep.events.rows.held import hold_joints
-    from lcpstep.events.rows.problem import fill, list_unknowns, row_of
-    from lcpstep.kernels.coulomb import solve_contacts
-    from lcpstep.kernels.energetic import strike_in_turn
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.recurrence import FOR_EVER, looks_back
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear
-    from lcpstep.pointers import abs, after, inf, max, min
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import clear
+from lcpstep.pointers import abs, after, inf, max, min
 
 ROUNDS = 100_000  # problems of impacts at one instant
 

@@ -25,27 +25,25 @@ from lcpstep.events.codes import (
     STAYS_CLOSED,
     SWITCH,
 )
+from lcpstep.events.contacts.balance import opens_any, reconsider
+from lcpstep.events.contacts.chatter import close_small
+from lcpstep.events.contacts.equations import measure
+from lcpstep.events.contacts.guards import begin_guards
+from lcpstep.events.contacts.impact import forget_terms, jam, jump
+from lcpstep.events.contacts.loose import find_loose
+from lcpstep.events.contacts.modes import adopt_modes, decide, obey, undecided
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
+from lcpstep.events.contacts.switching import look_at_guards, switch
+from lcpstep.events.rows.contacts import count_impulses, measure_velocities, still
+from lcpstep.events.rows.jumps import drive_joints, go_beyond
+from lcpstep.events.rows.keep import keep, keep_event
+from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
+from lcpstep.kernels.record import Record
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
-
-if not cython.compiled:
-    from lcpstep.events.contacts.balance import opens_any, reconsider
-    from lcpstep.events.contacts.chatter import close_small
-    from lcpstep.events.contacts.equations import measure
-    from lcpstep.events.contacts.guards import begin_guards
-    from lcpstep.events.contacts.impact import forget_terms, jam, jump
-    from lcpstep.events.contacts.loose import find_loose
-    from lcpstep.events.contacts.modes import adopt_modes, decide, obey, undecided
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
-    from lcpstep.events.contacts.switching import look_at_guards, switch
-    from lcpstep.events.rows.contacts import count_impulses, measure_velocities, still
-    from lcpstep.events.rows.jumps import drive_joints, go_beyond
-    from lcpstep.events.rows.keep import keep, keep_event
-    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear, copy
-    from lcpstep.pointers import abs, max, min
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import clear, copy
+from lcpstep.pointers import abs, max, min
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
 LOOK_AHEAD, FURTHER = 1e-6, 10.0

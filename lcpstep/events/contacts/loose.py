@@ -10,16 +10,14 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
+from lcpstep.events.contacts.state import GUARDS, Rubbing
+from lcpstep.events.rows.contacts import rubs
+from lcpstep.events.rows.equations import renew_biases, size_of_acceleration
+from lcpstep.events.rows.held import is_held
+from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.dop853 import STAGES
-
-if not cython.compiled:
-    from lcpstep.events.contacts.state import GUARDS, Rubbing
-    from lcpstep.events.rows.contacts import rubs
-    from lcpstep.events.rows.equations import renew_biases, size_of_acceleration
-    from lcpstep.events.rows.held import is_held
-    from lcpstep.kernels.clock import NOISE, RESOLUTION
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import Doubles, abs, after, max, min
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import Doubles, abs, after, max, min
 
 NEAR = 1e-3  # of the way to either end of where it is sought: how well a time is known
 DRIFT = 1e-9  # of the terms of an acceleration: one that the rows held do not keep at zero

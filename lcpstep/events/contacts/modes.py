@@ -21,26 +21,24 @@ from lcpstep.events.codes import (
     SLIDES,
     STICKS,
 )
+from lcpstep.events.contacts.bracing import braced
+from lcpstep.events.contacts.equations import force_noise
+from lcpstep.events.contacts.several import opened_or_closed
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints, hold_modes
+from lcpstep.events.rows.equations import size_of_acceleration
+from lcpstep.events.rows.held import constrain
+from lcpstep.events.rows.keep import tell
+from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
+from lcpstep.events.rows.problem import fill, leave_independent, list_unknowns, row_of, solve_forces
+from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.coulomb import motion_of
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.repose import moves, stay
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
-
-if not cython.compiled:
-    from lcpstep.events.contacts.bracing import braced
-    from lcpstep.events.contacts.equations import force_noise
-    from lcpstep.events.contacts.several import opened_or_closed
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints, hold_modes
-    from lcpstep.events.rows.equations import size_of_acceleration
-    from lcpstep.events.rows.held import constrain
-    from lcpstep.events.rows.keep import tell
-    from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
-    from lcpstep.events.rows.problem import fill, leave_independent, list_unknowns, row_of, solve_forces
-    from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.coulomb import motion_of
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.repose import moves, stay
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear, copy, product
-    from lcpstep.pointers import abs, after, max
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import clear, copy, product
+from lcpstep.pointers import abs, after, max
 
 # Of accelerations that hang together: as much solving for the forces leaves of one that is none
 LEANING = 1e-12

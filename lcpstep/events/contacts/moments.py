@@ -9,16 +9,14 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import SLIDES
+from lcpstep.events.contacts.guards import UNKNOWN, look, look_at_stage
+from lcpstep.events.contacts.state import GUARDS, Rubbing
+from lcpstep.events.rows.contacts import still
+from lcpstep.events.rows.jumps import find_jump
+from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.dop853 import STAGES
-
-if not cython.compiled:
-    from lcpstep.events.contacts.guards import UNKNOWN, look, look_at_stage
-    from lcpstep.events.contacts.state import GUARDS, Rubbing
-    from lcpstep.events.rows.contacts import still
-    from lcpstep.events.rows.jumps import find_jump
-    from lcpstep.kernels.clock import NOISE, RESOLUTION
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs, after, min
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import abs, after, min
 
 REFINEMENTS = 6  # of an event's time by repeated steps
 NEAR = 1e-5  # of a step: a way this short needs none, the trapezoidal rule leaves nothing of it but rounding

@@ -9,16 +9,14 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
+from lcpstep.events.contacts.equations import measure
+from lcpstep.events.contacts.modes import decide
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.rows.contacts import hold_modes
+from lcpstep.events.rows.held import constrain
 from lcpstep.kernels.status import DONE
-
-if not cython.compiled:
-    from lcpstep.events.contacts.equations import measure
-    from lcpstep.events.contacts.modes import decide
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.contacts import hold_modes
-    from lcpstep.events.rows.held import constrain
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import abs
+from lcpstep.kernels.vectors import copy, product
+from lcpstep.pointers import abs
 
 
 def part_before(s: Rubbing) -> None:

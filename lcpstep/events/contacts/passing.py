@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
+from math import sqrt
+
 import cython
 
+from lcpstep.events.contacts.held import right_hand_side
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.rows.contacts import add_impulse
+from lcpstep.events.rows.keep import keep
+from lcpstep.events.rows.projection import project
 from lcpstep.kernels.dop853 import ALL, STAGES
-
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.events.contacts.held import right_hand_side
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.contacts import add_impulse
-    from lcpstep.events.rows.keep import keep
-    from lcpstep.events.rows.projection import project
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear, copy
-    from lcpstep.pointers import abs
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import clear, copy
+from lcpstep.pointers import abs
 
 
 def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) -> None:

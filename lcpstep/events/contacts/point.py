@@ -11,21 +11,19 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles
 from lcpstep.events.codes import OPEN, RELATIVE_STEP, SLIDES
+from lcpstep.events.contacts.equations import measure, measure_rows
+from lcpstep.events.contacts.guards import look
+from lcpstep.events.contacts.held import right_hand_side
+from lcpstep.events.contacts.impact import find_free
+from lcpstep.events.contacts.modes import adopt_modes, decide
+from lcpstep.events.contacts.state import GUARDS, Rubbing
+from lcpstep.events.rows.contacts import hold_modes, pull
+from lcpstep.events.rows.equations import free_motion
 from lcpstep.kernels.status import DONE, NOT_FINITE
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.events.contacts.equations import measure, measure_rows
-    from lcpstep.events.contacts.guards import look
-    from lcpstep.events.contacts.held import right_hand_side
-    from lcpstep.events.contacts.impact import find_free
-    from lcpstep.events.contacts.modes import adopt_modes, decide
-    from lcpstep.events.contacts.state import GUARDS, Rubbing
-    from lcpstep.events.rows.contacts import hold_modes, pull
-    from lcpstep.events.rows.equations import free_motion
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import after
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import after
 
 
 @cython.ccall

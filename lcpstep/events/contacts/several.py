@@ -13,11 +13,10 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.coulomb import ContactProblem, motion_of
-    from lcpstep.kernels.linear import factorise, positive_definite, solve
-    from lcpstep.kernels.vectors import largest
-    from lcpstep.pointers import abs
+from lcpstep.kernels.coulomb import ContactProblem, motion_of
+from lcpstep.kernels.linear import factorise, positive_definite, solve
+from lcpstep.kernels.vectors import largest
+from lcpstep.pointers import abs
 
 MOST = 8  # contacts that slide at once: of more not every set is tried
 CLEARLY = 1e-9  # relative: forces and accelerations that are less may be zero

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.events.contacts.held import know_rows, right_hand_side
-    from lcpstep.events.contacts.loose import straying
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.contacts.step import step
-    from lcpstep.events.rows.held import size_of_pushes
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import Doubles, after
+from lcpstep.events.contacts.held import know_rows, right_hand_side
+from lcpstep.events.contacts.loose import straying
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.contacts.step import step
+from lcpstep.events.rows.held import size_of_pushes
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import Doubles, after
 
 
 class Smooth(Rubbing):

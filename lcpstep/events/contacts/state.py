@@ -10,20 +10,18 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
 from lcpstep.events.codes import ENTERED
+from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
+from lcpstep.events.rows.contacts import Contacts
+from lcpstep.kernels.bracket import Bracket
+from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.dop853 import ALL
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import NOT_FINITE
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
-    from lcpstep.events.rows.contacts import Contacts
-    from lcpstep.kernels.bracket import Bracket
-    from lcpstep.kernels.coefficients import Coefficients
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.rungekutta import RungeKutta
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.pointers import after, indices_after
+from lcpstep.kernels.tally import Tally
+from lcpstep.pointers import after, indices_after
 
 # Of a contact: its gap or normal force; its sliding velocity, or the two edges of its friction cone
 GUARDS = 3

@@ -17,28 +17,26 @@ from lcpstep.events.codes import (
     STICKS,
     SWITCH,
 )
+from lcpstep.events.contacts.equations import measure, share_left
+from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
+from lcpstep.events.contacts.hops import carry, find_landings, interrupt, shortest_hop
+from lcpstep.events.contacts.impact import forget_terms
+from lcpstep.events.contacts.loose import first_stray
+from lcpstep.events.contacts.modes import decide, gives, undecided
+from lcpstep.events.contacts.moments import jumps, locate, of_sliding, turns_at_once
+from lcpstep.events.contacts.parting import part_before
+from lcpstep.events.contacts.passing import take_over
+from lcpstep.events.contacts.state import GUARDS, Rubbing
+from lcpstep.events.contacts.surfaces import find_coming, find_touching, lift
+from lcpstep.events.contacts.switching import reach_guard, watch
+from lcpstep.events.rows.contacts import gap_tolerance, hold_modes, rubs, sliding, still
+from lcpstep.events.rows.jumps import breaks
+from lcpstep.events.rows.keep import keep
+from lcpstep.kernels.record import Record
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
-
-if not cython.compiled:
-    from lcpstep.events.contacts.equations import measure, share_left
-    from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
-    from lcpstep.events.contacts.hops import carry, find_landings, interrupt, shortest_hop
-    from lcpstep.events.contacts.impact import forget_terms
-    from lcpstep.events.contacts.loose import first_stray
-    from lcpstep.events.contacts.modes import decide, gives, undecided
-    from lcpstep.events.contacts.moments import jumps, locate, of_sliding, turns_at_once
-    from lcpstep.events.contacts.parting import part_before
-    from lcpstep.events.contacts.passing import take_over
-    from lcpstep.events.contacts.state import GUARDS, Rubbing
-    from lcpstep.events.contacts.surfaces import find_coming, find_touching, lift
-    from lcpstep.events.contacts.switching import reach_guard, watch
-    from lcpstep.events.rows.contacts import gap_tolerance, hold_modes, rubs, sliding, still
-    from lcpstep.events.rows.jumps import breaks
-    from lcpstep.events.rows.keep import keep
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import abs, max, min
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import abs, max, min
 
 # Of a step: where the forces after a release, or a slip, are looked at, how much further while they are zero, and how
 # far at most

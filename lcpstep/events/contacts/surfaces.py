@@ -5,16 +5,14 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN
-
-if not cython.compiled:
-    from lcpstep.events.contacts.equations import measure, share_left
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
-    from lcpstep.events.rows.held import constrain, contradiction, parted
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.dynamics import gap_rates, gaps
-    from lcpstep.kernels.vectors import clear, copy, largest, product
-    from lcpstep.pointers import Doubles, abs, after, min
+from lcpstep.events.contacts.equations import measure, share_left
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
+from lcpstep.events.rows.held import constrain, contradiction, parted
+from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.dynamics import gap_rates, gaps
+from lcpstep.kernels.vectors import clear, copy, largest, product
+from lcpstep.pointers import Doubles, abs, after, min
 
 FREE = 1e-9  # relative: what a row can move of itself while others are held, or it depends on them
 TOGETHER = 1e-3  # of the tolerance of a gap

@@ -18,6 +18,14 @@ from typing import Any
 import cython
 
 from lcpstep.events.codes import ENTERED, INSIDE, JUMPED, LOOKED, OPEN, SWITCH
+from lcpstep.events.contacts.equations import measure
+from lcpstep.events.contacts.impact import forget_terms
+from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.contacts.surfaces import find_closed
+from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
+from lcpstep.events.hybrid.loop import MAX_STALLED, enter, leave
+from lcpstep.events.hybrid.state import Motion
+from lcpstep.events.rows.contacts import gap_tolerance
 from lcpstep.kernels.status import (
     BUFFER_FULL,
     DONE,
@@ -26,18 +34,8 @@ from lcpstep.kernels.status import (
     NOT_TRANSVERSAL,
     TOO_MANY_EVENTS,
 )
-
-if not cython.compiled:
-    from lcpstep.events.contacts.equations import measure
-    from lcpstep.events.contacts.impact import forget_terms
-    from lcpstep.events.contacts.state import Rubbing
-    from lcpstep.events.contacts.surfaces import find_closed
-    from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
-    from lcpstep.events.hybrid.loop import MAX_STALLED, enter, leave
-    from lcpstep.events.hybrid.state import Motion
-    from lcpstep.events.rows.contacts import gap_tolerance
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.pointers import Doubles, max, min
+from lcpstep.kernels.tally import Tally
+from lcpstep.pointers import Doubles, max, min
 
 
 class Watched(Motion):

@@ -6,14 +6,13 @@ taken from its ends (`suspect`); over a long stretch it is a bound that the free
 
 from __future__ import annotations
 
+from math import sqrt
+
 import cython
 
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.events.flight.motion import Flight, absolute
-    from lcpstep.events.flight.oscillator import envelope
-    from lcpstep.pointers import abs, inf, max, min
+from lcpstep.events.flight.motion import Flight, absolute
+from lcpstep.events.flight.oscillator import envelope
+from lcpstep.pointers import abs, inf, max, min
 
 LEAPS = 12  # at most, of an open flight
 SURE = 0.95  # share of a leap that the bound allows

@@ -6,10 +6,9 @@ from typing import Any
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.events.flight.motion import Flight, rebase, state_at
-    from lcpstep.pointers import max, min
+from lcpstep.arrays import doubles, indices
+from lcpstep.events.flight.motion import Flight, rebase, state_at
+from lcpstep.pointers import max, min
 
 
 def keep(s: Flight, t: float) -> None:

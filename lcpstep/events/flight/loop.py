@@ -8,20 +8,18 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.flight.clear import WORTH, clear_until, suspect
 from lcpstep.events.flight.contact import CLOSED, JUST_RELEASED, NONE, ON_THE_SURFACE, SLACK, STRIDE, UNSEEN
+from lcpstep.events.flight.keep import keep, keep_event, keep_times
+from lcpstep.events.flight.modes import go_on, impact, release, settle, settle_again, turn_corner
+from lcpstep.events.flight.motion import Flight, free, on_obstacle, rebase
+from lcpstep.events.flight.near import SHORT, along, hop_end, is_low, low_end, stretch
+from lcpstep.events.flight.rest import contact_impulse, first_release
+from lcpstep.events.flight.roots import first_contact, polish
+from lcpstep.kernels.clock import NUDGE
+from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.status import DONE, NOT_FINITE
-
-if not cython.compiled:
-    from lcpstep.events.flight.clear import WORTH, clear_until, suspect
-    from lcpstep.events.flight.keep import keep, keep_event, keep_times
-    from lcpstep.events.flight.modes import go_on, impact, release, settle, settle_again, turn_corner
-    from lcpstep.events.flight.motion import Flight, free, on_obstacle, rebase
-    from lcpstep.events.flight.near import SHORT, along, hop_end, is_low, low_end, stretch
-    from lcpstep.events.flight.rest import contact_impulse, first_release
-    from lcpstep.events.flight.roots import first_contact, polish
-    from lcpstep.kernels.clock import NUDGE
-    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
-    from lcpstep.pointers import abs, inf, max, min
+from lcpstep.pointers import abs, inf, max, min
 
 
 class Course(Events):

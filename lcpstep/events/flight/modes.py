@@ -21,13 +21,11 @@ from lcpstep.events.flight.contact import (
     STICK,
     UNSEEN,
 )
-
-if not cython.compiled:
-    from lcpstep.events.flight.keep import keep_event
-    from lcpstep.events.flight.motion import Flight, free, leave_from, on_obstacle
-    from lcpstep.events.flight.rest import alpha_at
-    from lcpstep.kernels.clock import NUDGE
-    from lcpstep.pointers import abs, max, min
+from lcpstep.events.flight.keep import keep_event
+from lcpstep.events.flight.motion import Flight, free, leave_from, on_obstacle
+from lcpstep.events.flight.rest import alpha_at
+from lcpstep.kernels.clock import NUDGE
+from lcpstep.pointers import abs, max, min
 
 JUMP = 1e-9  # of the velocities at hand: an obstacle's velocity that jumps by less does so by rounding
 

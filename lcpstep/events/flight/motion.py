@@ -9,24 +9,21 @@ lasts while alpha <= 0. Source: `oscillator`; G. Osorio, Complex Behavior in Imp
 
 from __future__ import annotations
 
+from math import cos, sin
 from typing import Any
 
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles
 from lcpstep.events.flight.contact import CLOSED, FREE
-
-if not cython.compiled:
-    from math import cos, sin
-
-    from lcpstep.arrays import doubles
-    from lcpstep.events.flight.oscillator import Oscillator, fundamental
-    from lcpstep.kernels.bracket import Bracket
-    from lcpstep.kernels.clock import Clock
-    from lcpstep.kernels.function import Function
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.turn import Turn
-    from lcpstep.pointers import inf, nan
+from lcpstep.events.flight.oscillator import Oscillator, fundamental
+from lcpstep.kernels.bracket import Bracket
+from lcpstep.kernels.clock import Clock
+from lcpstep.kernels.function import Function
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.turn import Turn
+from lcpstep.pointers import inf, nan
 
 
 class Flight(Clock):

@@ -17,11 +17,9 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.flight.contact import NONE, RESOLUTION
-
-if not cython.compiled:
-    from lcpstep.events.flight.motion import Flight, free
-    from lcpstep.kernels.quadratic import first_zero
-    from lcpstep.pointers import abs, min
+from lcpstep.events.flight.motion import Flight, free
+from lcpstep.kernels.quadratic import first_zero
+from lcpstep.pointers import abs, min
 
 SHORT = 0.02  # of the scan interval: the cubic resolves the acceleration to rounding
 LOW = 1e-6  # of the positions at hand: higher gaps are as well known by their difference

@@ -13,13 +13,12 @@ linear vibrations, e.g. L. Meirovitch, Fundamentals of Vibrations, chapters 2 an
 
 from __future__ import annotations
 
+from math import copysign, cos, exp, expm1, hypot, sin, sqrt
+
 import cython
 
-if not cython.compiled:
-    from math import copysign, cos, exp, expm1, hypot, sin, sqrt
-
-    from lcpstep.kernels.model import Model
-    from lcpstep.pointers import abs, max
+from lcpstep.kernels.model import Model
+from lcpstep.pointers import abs, max
 
 SMALL = 0.25  # of 2 delta tau and w2 tau^2: below it the power series is used
 # Ratios of the coefficients of sin x / x in x^2, and of 2 (1 - cos x) / x^2

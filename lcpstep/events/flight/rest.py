@@ -11,11 +11,9 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.flight.contact import NONE, RESOLUTION
+from lcpstep.events.flight.motion import Flight, on_obstacle
 from lcpstep.gauss import gauss
-
-if not cython.compiled:
-    from lcpstep.events.flight.motion import Flight, on_obstacle
-    from lcpstep.pointers import abs, inf, min
+from lcpstep.pointers import abs, inf, min
 
 PROBES = 4  # samples of alpha per interval while the contact is closed
 NODES = 8  # and weights of Gauss, for the impulse of the contact force

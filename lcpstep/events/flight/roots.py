@@ -11,11 +11,9 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.flight.contact import NONE, RESOLUTION
-
-if not cython.compiled:
-    from lcpstep.events.flight.motion import Flight, free
-    from lcpstep.kernels.bracket import Bracket
-    from lcpstep.pointers import abs
+from lcpstep.events.flight.motion import Flight, free
+from lcpstep.kernels.bracket import Bracket
+from lcpstep.pointers import abs
 
 STRAIGHT = 1e-3  # of a gap root: the last step, relative to its bracket, and the change of the slope over it
 GUESSES = 3  # steps of Newton's on the cubic of a first guess

@@ -13,15 +13,12 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.events.hybrid.kinds import ARRIVE as ARRIVE
+from lcpstep.arrays import doubles, indices
 from lcpstep.events.hybrid.kinds import DIFFERENCE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.function import Functions
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.function import Functions
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import Doubles, abs, after, max
 
 INNER, OUTER = 2.0 / 3.0, -1.0 / 12.0
 TINY = 1e-300  # a band is never empty

@@ -9,6 +9,12 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.hybrid.field import approaches, band_and_rate, guard, project
+from lcpstep.events.hybrid.kinds import ARRIVE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING
+from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
+from lcpstep.events.hybrid.state import Motion
+from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Course
 from lcpstep.kernels.status import (
     BUFFER_FULL,
     DONE,
@@ -18,24 +24,8 @@ from lcpstep.kernels.status import (
     STEP_TOO_SMALL,
     TOO_MANY_EVENTS,
 )
-
-if not cython.compiled:
-    from lcpstep.events.hybrid.field import (
-        ARRIVE,
-        EXIT_ABOVE,
-        EXIT_BELOW,
-        NOT_SLIDING,
-        approaches,
-        band_and_rate,
-        guard,
-        project,
-    )
-    from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
-    from lcpstep.events.hybrid.state import Motion
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Course
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs, min
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import abs, min
 
 MAX_STALLED = 100  # switches at one instant
 NEVER_LEFT = 10  # how many of them a switch counts for by a guard whose band was not left

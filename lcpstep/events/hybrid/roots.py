@@ -15,12 +15,11 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.bracket import Bracket
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.arrays import doubles
+from lcpstep.kernels.bracket import Bracket
+from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import Doubles, abs, after, max
 
 DEGREE = 9
 DEPTH = 42  # halvings at most

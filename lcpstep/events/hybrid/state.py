@@ -7,16 +7,14 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
+from lcpstep.events.hybrid.field import Machine, field, guard
 from lcpstep.events.hybrid.layout import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.events.hybrid.field import Machine, field, guard
-    from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.rungekutta import RungeKutta
-    from lcpstep.kernels.vectors import copy, finite
-    from lcpstep.pointers import Doubles, abs, after, inf
+from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
+from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.rungekutta import RungeKutta
+from lcpstep.kernels.vectors import copy, finite
+from lcpstep.pointers import Doubles, abs, after, inf
 
 FIRST_STEP = 0.1  # of the longest
 

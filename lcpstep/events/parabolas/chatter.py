@@ -5,15 +5,13 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
-
-if not cython.compiled:
-    from lcpstep.events.parabolas.state import Mechanism
-    from lcpstep.events.rows.chatter import disturbs, find_over, take_along, tell_over
-    from lcpstep.events.rows.held import is_held, solve_held
-    from lcpstep.events.rows.keep import put_on_account
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear
+from lcpstep.events.parabolas.state import Mechanism
+from lcpstep.events.rows.chatter import disturbs, find_over, take_along, tell_over
+from lcpstep.events.rows.held import is_held, solve_held
+from lcpstep.events.rows.keep import put_on_account
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import clear
 
 
 def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:

@@ -9,16 +9,14 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import JUMP, OPEN
-
-if not cython.compiled:
-    from lcpstep.events.parabolas.state import Mechanism
-    from lcpstep.events.rows.held import push_by_change
-    from lcpstep.events.rows.keep import keep
-    from lcpstep.kernels.quadratic import first_zero
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy, largest, product
-    from lcpstep.pointers import abs, max, min
+from lcpstep.events.parabolas.state import Mechanism
+from lcpstep.events.rows.held import push_by_change
+from lcpstep.events.rows.keep import keep
+from lcpstep.kernels.quadratic import first_zero
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import copy, largest, product
+from lcpstep.pointers import abs, max, min
 
 LARGE = 1e-6  # of the largest coordinate: what difference of coordinates has digits enough
 

@@ -13,14 +13,12 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
-
-if not cython.compiled:
-    from lcpstep.events.parabolas.forces import joints_own, solve_members
-    from lcpstep.events.parabolas.state import Mechanism
-    from lcpstep.events.rows.chatter import CHECKED
-    from lcpstep.events.rows.held import add_column, constrain, hold, hold_joints
-    from lcpstep.kernels.vectors import clear, copy, largest, product
-    from lcpstep.pointers import abs, min
+from lcpstep.events.parabolas.forces import joints_own, solve_members
+from lcpstep.events.parabolas.state import Mechanism
+from lcpstep.events.rows.chatter import CHECKED
+from lcpstep.events.rows.held import add_column, constrain, hold, hold_joints
+from lcpstep.kernels.vectors import clear, copy, largest, product
+from lcpstep.pointers import abs, min
 
 
 def strike(s: Mechanism) -> bool:

@@ -11,20 +11,18 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import BEGIN, JUMP, MOVE, SETTLE
+from lcpstep.events.parabolas.flight import fly
+from lcpstep.events.parabolas.modes import jump, settle
+from lcpstep.events.parabolas.state import Mechanism
+from lcpstep.events.rows.equations import free_motion, measure_rates, respond
+from lcpstep.events.rows.keep import keep
+from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
+from lcpstep.kernels.dynamics import gaps
+from lcpstep.kernels.record import Record
 from lcpstep.kernels.status import DONE, NOT_FINITE
-
-if not cython.compiled:
-    from lcpstep.events.parabolas.flight import fly
-    from lcpstep.events.parabolas.modes import jump, settle
-    from lcpstep.events.parabolas.state import Mechanism
-    from lcpstep.events.rows.equations import free_motion, measure_rates, respond
-    from lcpstep.events.rows.keep import keep
-    from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
-    from lcpstep.kernels.dynamics import gaps
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import after
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import copy, product
+from lcpstep.pointers import after
 
 
 class Course(Events):

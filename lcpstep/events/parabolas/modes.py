@@ -8,22 +8,20 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import IMPACT, JUMP, NO_FORCES, NO_IMPULSES, OPEN, SLIDES
+from lcpstep.events.parabolas.chatter import close_chatter, hand_on
+from lcpstep.events.parabolas.flight import polish, rebase, synchronise
+from lcpstep.events.parabolas.forces import contact_forces, stands
+from lcpstep.events.parabolas.impact import strike
+from lcpstep.events.parabolas.state import Mechanism
+from lcpstep.events.rows.cycle import fades, look_back, recurs, sum_up
+from lcpstep.events.rows.held import hold_joints
+from lcpstep.events.rows.keep import keep_event, tell
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.recurrence import FOR_EVER, looks_back
 from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
-
-if not cython.compiled:
-    from lcpstep.events.parabolas.chatter import close_chatter, hand_on
-    from lcpstep.events.parabolas.flight import polish, rebase, synchronise
-    from lcpstep.events.parabolas.forces import contact_forces, stands
-    from lcpstep.events.parabolas.impact import strike
-    from lcpstep.events.parabolas.state import Mechanism
-    from lcpstep.events.rows.cycle import fades, look_back, recurs, sum_up
-    from lcpstep.events.rows.held import hold_joints
-    from lcpstep.events.rows.keep import keep_event, tell
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.recurrence import FOR_EVER, looks_back
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.together import CROSSED, moment_untold, order_matters
-    from lcpstep.pointers import abs, max
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.together import CROSSED, moment_untold, order_matters
+from lcpstep.pointers import abs, max
 
 ROUNDS = 100_000  # problems of impacts at one instant
 

@@ -7,15 +7,14 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.events.rows.chatter import find_stop
-    from lcpstep.events.rows.contacts import Contacts, add_impulse, count_impulses, hold_modes
-    from lcpstep.events.rows.equations import size_of
-    from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.together import gap_rounding
-    from lcpstep.pointers import abs, after, inf, max
+from lcpstep.arrays import doubles
+from lcpstep.events.rows.chatter import find_stop
+from lcpstep.events.rows.contacts import Contacts, add_impulse, count_impulses, hold_modes
+from lcpstep.events.rows.equations import size_of
+from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.together import gap_rounding
+from lcpstep.pointers import abs, after, inf, max
 
 
 class Mechanism(Contacts):

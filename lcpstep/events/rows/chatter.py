@@ -16,24 +16,22 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import ACCUMULATION, OPEN
-
-if not cython.compiled:
-    from lcpstep.events.rows.contacts import (
-        Contacts,
-        gap_of,
-        gap_tolerance,
-        hold_modes,
-        is_met,
-        rubs,
-        speed_tolerance,
-    )
-    from lcpstep.events.rows.equations import other
-    from lcpstep.events.rows.held import constrain, solve_held
-    from lcpstep.kernels.quadratic import accumulation, first_zero
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear, copy, largest
-    from lcpstep.pointers import abs, max, min
+from lcpstep.events.rows.contacts import (
+    Contacts,
+    gap_of,
+    gap_tolerance,
+    hold_modes,
+    is_met,
+    rubs,
+    speed_tolerance,
+)
+from lcpstep.events.rows.equations import other
+from lcpstep.events.rows.held import constrain, solve_held
+from lcpstep.kernels.quadratic import accumulation, first_zero
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import clear, copy, largest
+from lcpstep.pointers import abs, max, min
 
 CHECKED = 1e-10  # of the largest force: a pull that is no rounding
 

@@ -14,20 +14,18 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
 from lcpstep.events.codes import BEGIN, LEANS, OPEN, SLIDES, STICKS
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.events.rows.equations import least_effect, other, size_of
-    from lcpstep.events.rows.held import constrain, hold, hold_joints, is_held
-    from lcpstep.events.rows.loads import share_out
-    from lcpstep.events.rows.on_joints import can_bear
-    from lcpstep.events.rows.state import Rows
-    from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.coulomb import ContactProblem
-    from lcpstep.kernels.together import gap_rounding
-    from lcpstep.kernels.vectors import clear, copy, product
-    from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
+from lcpstep.events.rows.equations import least_effect, other, size_of
+from lcpstep.events.rows.held import constrain, hold, hold_joints, is_held
+from lcpstep.events.rows.loads import share_out
+from lcpstep.events.rows.on_joints import can_bear
+from lcpstep.events.rows.state import Rows
+from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.coulomb import ContactProblem
+from lcpstep.kernels.together import gap_rounding
+from lcpstep.kernels.vectors import clear, copy, product
+from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
 
 STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
 

@@ -8,14 +8,12 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import ACCUMULATION, OPEN, SLIDES, STICKS
-
-if not cython.compiled:
-    from lcpstep.events.rows.contacts import Contacts, is_met, rubs
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.recurrence import CERTAIN, FAINT, FOR_EVER, left, proportion
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import clear, copy
-    from lcpstep.pointers import abs, after, max
+from lcpstep.events.rows.contacts import Contacts, is_met, rubs
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.recurrence import CERTAIN, FAINT, FOR_EVER, left, proportion
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import clear, copy
+from lcpstep.pointers import abs, after, max
 
 
 def look_back(s: Contacts) -> None:

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.events.rows.state import Rows
-    from lcpstep.kernels.acceleration import divide_by_mass, response
-    from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after
+from lcpstep.events.rows.state import Rows
+from lcpstep.kernels.acceleration import divide_by_mass, response
+from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import copy, product
+from lcpstep.pointers import Doubles, abs, after
 
 JUMPS = 1e-9  # of velocities: a rate of a gap that changes by less at a corner does so by rounding
 BENDS = 8.0  # times what it changes by just beside the corner: neither is that a jump

@@ -13,14 +13,13 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.events.rows.equations import other, renew_rates, respond_held, size_of, size_of_acceleration
-    from lcpstep.events.rows.on_joints import leave_joints, leave_joints_again, put_on_joints
-    from lcpstep.events.rows.state import Rows
-    from lcpstep.kernels.acceleration import inverse_mass
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.vectors import add, clear, copy, largest, product
-    from lcpstep.pointers import Doubles, abs, after, inf, max
+from lcpstep.events.rows.equations import other, renew_rates, respond_held, size_of, size_of_acceleration
+from lcpstep.events.rows.on_joints import leave_joints, leave_joints_again, put_on_joints
+from lcpstep.events.rows.state import Rows
+from lcpstep.kernels.acceleration import inverse_mass
+from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.vectors import add, clear, copy, largest, product
+from lcpstep.pointers import Doubles, abs, after, inf, max
 
 DEPENDENT = 2.0**-48  # relative rounding: what a row must have more of that the rows before it have not
 TAKEN_OUT = 2.0**-45  # of a row's mobility: what taking joints out of the row leaves in it, in the same unit

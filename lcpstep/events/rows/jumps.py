@@ -9,15 +9,14 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.events.rows.equations import JUMPS, least_effect, list_gaps, measure_rates, size_of
-    from lcpstep.events.rows.held import constrain, hold_joints
-    from lcpstep.events.rows.state import Rows
-    from lcpstep.kernels.clock import NUDGE
-    from lcpstep.kernels.rungekutta import RungeKutta
-    from lcpstep.kernels.sudden import MORE, SUDDEN, coarseness
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.events.rows.equations import JUMPS, least_effect, list_gaps, measure_rates, size_of
+from lcpstep.events.rows.held import constrain, hold_joints
+from lcpstep.events.rows.state import Rows
+from lcpstep.kernels.clock import NUDGE
+from lcpstep.kernels.rungekutta import RungeKutta
+from lcpstep.kernels.sudden import MORE, SUDDEN, coarseness
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import Doubles, abs, after, max
 
 TOLERANCES = 8.0  # of a velocity: what a step leaves of a row held
 

@@ -15,13 +15,11 @@ from lcpstep.events.codes import (
     STICK_TANGENT,
     STICKS,
 )
-
-if not cython.compiled:
-    from lcpstep.events.rows.contacts import Contacts, add_impulse, of_tangent, rubs, sliding
-    from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.events.rows.contacts import Contacts, add_impulse, of_tangent, rubs, sliding
+from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.tally import Tally
+from lcpstep.pointers import Doubles, abs, after, max
 
 
 def keep(s: Contacts, record: Record, t: float, y: Doubles) -> None:

@@ -11,16 +11,15 @@ R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear Complementarity Problem (SIAM 
 
 from __future__ import annotations
 
+from math import sqrt
+
 import cython
 
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.events.rows.equations import couple, other, respond_to
-    from lcpstep.events.rows.held import hold, hold_joints, is_held, solve_held
-    from lcpstep.events.rows.state import Rows
-    from lcpstep.kernels.vectors import add, clear, product
-    from lcpstep.pointers import Doubles, Indices, after
+from lcpstep.events.rows.equations import couple, other, respond_to
+from lcpstep.events.rows.held import hold, hold_joints, is_held, solve_held
+from lcpstep.events.rows.state import Rows
+from lcpstep.kernels.vectors import add, clear, product
+from lcpstep.pointers import Doubles, Indices, after
 
 
 def unload(s: Rows, force: Doubles, loaded: Indices, n_c: int) -> None:

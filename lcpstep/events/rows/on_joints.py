@@ -13,12 +13,11 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.events.rows.equations import other
-    from lcpstep.events.rows.state import Rows
-    from lcpstep.kernels.acceleration import response
-    from lcpstep.kernels.vectors import add, clear, copy, product
-    from lcpstep.pointers import Doubles, abs, after
+from lcpstep.events.rows.equations import other
+from lcpstep.events.rows.state import Rows
+from lcpstep.kernels.acceleration import response
+from lcpstep.kernels.vectors import add, clear, copy, product
+from lcpstep.pointers import Doubles, abs, after
 
 # Of a row's mobility: what is left of one that is a joint's own; more where rows turn
 SAME, DEPENDENT = 1e-22, 1e-12

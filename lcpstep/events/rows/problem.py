@@ -9,15 +9,13 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN
-
-if not cython.compiled:
-    from lcpstep.events.rows.contacts import Contacts, rubs
-    from lcpstep.events.rows.equations import size_of_acceleration
-    from lcpstep.events.rows.loads import unload
-    from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.coulomb import solve_contacts
-    from lcpstep.kernels.vectors import clear
-    from lcpstep.pointers import Indices, after
+from lcpstep.events.rows.contacts import Contacts, rubs
+from lcpstep.events.rows.equations import size_of_acceleration
+from lcpstep.events.rows.loads import unload
+from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.coulomb import solve_contacts
+from lcpstep.kernels.vectors import clear
+from lcpstep.pointers import Indices, after
 
 
 def row_of(s: Contacts, a: int, n_a: int) -> int:

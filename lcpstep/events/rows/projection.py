@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.events.rows.equations import least_effect, list_gaps
-    from lcpstep.events.rows.held import measure_missing, push_by_change, renew_held
-    from lcpstep.events.rows.state import Rows
-    from lcpstep.kernels.acceleration import factor_mass
-    from lcpstep.kernels.dynamics import gaps
-    from lcpstep.kernels.vectors import add, clear, largest
-    from lcpstep.pointers import Doubles, abs, inf
+from lcpstep.events.rows.equations import least_effect, list_gaps
+from lcpstep.events.rows.held import measure_missing, push_by_change, renew_held
+from lcpstep.events.rows.state import Rows
+from lcpstep.kernels.acceleration import factor_mass
+from lcpstep.kernels.dynamics import gaps
+from lcpstep.kernels.vectors import add, clear, largest
+from lcpstep.pointers import Doubles, abs, inf
 
 FEW, MOST = 2, 50  # of Newton's iterations
 HELPS = 0.25  # of a gap: what an iteration may leave of it without new rows

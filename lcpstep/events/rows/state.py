@@ -7,12 +7,11 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.clock import Clock
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.sudden import Sudden
-    from lcpstep.pointers import after, indices_after
+from lcpstep.arrays import doubles, indices
+from lcpstep.kernels.clock import Clock
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.sudden import Sudden
+from lcpstep.pointers import after, indices_after
 
 
 class Rows(Clock):

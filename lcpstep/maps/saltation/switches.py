@@ -18,25 +18,14 @@ from typing import Any
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles
+from lcpstep.events.hybrid.field import INNER, OUTER, Machine, field, guard_gradient, reach, surface_gradient
+from lcpstep.events.hybrid.kinds import ARRIVE, NOT_SLIDING
+from lcpstep.events.hybrid.layout import SWITCH_LEAD
+from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import DONE, NOT_TRANSVERSAL
-
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.events.hybrid.field import (
-        ARRIVE,
-        INNER,
-        NOT_SLIDING,
-        OUTER,
-        Machine,
-        field,
-        guard_gradient,
-        reach,
-        surface_gradient,
-    )
-    from lcpstep.events.hybrid.state import SWITCH_LEAD
-    from lcpstep.kernels.rungekutta import RungeKutta
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import Doubles, abs, after, whole
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import Doubles, abs, after, whole
 
 TOLERANCE = 1e-12  # of the variational flow
 RELATIVE_STEP: float = np.finfo(float).eps ** 0.2 * 0.1  # of the differences of fields and resets

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.vectors import clear, largest, product
-    from lcpstep.pointers import Doubles, Indices, after
+from lcpstep.kernels.vectors import clear, largest, product
+from lcpstep.pointers import Doubles, Indices, after
 
 HELD = 1e-9  # of a row: what is left of it where the place is off joints that turn by rounding
 

@@ -14,18 +14,16 @@ Dynamics with Unilateral Contacts (Wiley 1996), chapter 4.
 
 from __future__ import annotations
 
+from math import sqrt
+
 import cython
 import numpy as np
 
+from lcpstep.arrays import doubles, indices
+from lcpstep.kernels.linear import factorise, solve
+from lcpstep.kernels.vectors import copy, largest, product, size_of_product
+from lcpstep.pointers import Doubles, Indices, abs, after, inf, max
 from lcpstep.stepping.steps import CONTRADICTION, RESOLUTION
-
-if not cython.compiled:
-    from math import sqrt
-
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.linear import factorise, solve
-    from lcpstep.kernels.vectors import copy, largest, product, size_of_product
-    from lcpstep.pointers import Doubles, Indices, abs, after, inf, max
 
 NEGLIGIBLE = 1e-7  # of a joint's mobility: a direction this stiff is another joint's, up to drift
 STALLED = 1e4  # of the slack: how much rounding in the gaps' own arithmetic may leave

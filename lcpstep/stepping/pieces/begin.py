@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import external_force
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import abs
-    from lcpstep.stepping.pieces.codes import CLOSED, EPS, FINISHED, GROUND, NOT_FINITE
-    from lcpstep.stepping.pieces.corners import find_corners
-    from lcpstep.stepping.pieces.keep import keep, keep_now
-    from lcpstep.stepping.pieces.magnitudes import acceleration_terms
-    from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, respond
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import rounded_by, within
+from lcpstep.kernels.dynamics import external_force
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import abs
+from lcpstep.stepping.pieces.codes import CLOSED, EPS, FINISHED, GROUND, NOT_FINITE
+from lcpstep.stepping.pieces.corners import find_corners
+from lcpstep.stepping.pieces.keep import keep, keep_now
+from lcpstep.stepping.pieces.magnitudes import acceleration_terms
+from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, respond
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.times import rounded_by, within
 
 
 def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:

@@ -7,11 +7,10 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.pointers import after
+from lcpstep.arrays import doubles
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.pointers import after
 
 # In place of the duration, which rows of `Located` do not have: the row is in the scene's coordinates
 PUT_BACK = 1.0

@@ -13,13 +13,12 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.model import Model
-    from lcpstep.pointers import Doubles, after, max
-    from lcpstep.stepping.pieces.codes import INERTIA, ROUNDING
-    from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
-    from lcpstep.stepping.pieces.refine import FORCES, NONE, solve_several
-    from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.kernels.model import Model
+from lcpstep.pointers import Doubles, after, max
+from lcpstep.stepping.pieces.codes import INERTIA, ROUNDING
+from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
+from lcpstep.stepping.pieces.refine import FORCES, NONE, solve_several
+from lcpstep.stepping.pieces.state import Plan, Work
 
 
 def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:

@@ -11,19 +11,18 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.linear import solve_factored
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import add, clear, copy, product
-    from lcpstep.pointers import Doubles, abs, after, max, min
-    from lcpstep.stepping.pieces.chosen import solve_chosen
-    from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
-    from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
-    from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, keep_closed
-    from lcpstep.stepping.pieces.smooth import answer_forces
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import release, release_time, stick, turn
+from lcpstep.kernels.linear import solve_factored
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import add, clear, copy, product
+from lcpstep.pointers import Doubles, abs, after, max, min
+from lcpstep.stepping.pieces.chosen import solve_chosen
+from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
+from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
+from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, keep_closed
+from lcpstep.stepping.pieces.smooth import answer_forces
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.switches import release, release_time, stick, turn
 
 
 def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) -> bool:

@@ -14,14 +14,13 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import gap_rates, moves
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import abs, max, min
-    from lcpstep.stepping.pieces.codes import CLOSED, GROUND
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import within
+from lcpstep.kernels.dynamics import gap_rates, moves
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import copy, product
+from lcpstep.pointers import abs, max, min
+from lcpstep.stepping.pieces.codes import CLOSED, GROUND
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.times import within
 
 JUMP = 1e-9  # of the velocities at hand: a gap velocity that jumps by less does so by rounding
 

@@ -4,28 +4,27 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.linear import grow_factor, solve_factored
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import add, product
-    from lcpstep.pointers import Doubles, abs, after, max
-    from lcpstep.stepping.pieces.codes import (
-        CORNER,
-        FINISHED,
-        GROUND,
-        LCP_FAILED,
-        NOBODY,
-        NOT_FINITE,
-        OPEN,
-        ROUNDING,
-    )
-    from lcpstep.stepping.pieces.impulses import strike, zero_speeds
-    from lcpstep.stepping.pieces.keep import keep
-    from lcpstep.stepping.pieces.magnitudes import speed_terms
-    from lcpstep.stepping.pieces.smooth import mobility, renew_forces, renew_mobility
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import idle, stick, turn
+from lcpstep.kernels.linear import grow_factor, solve_factored
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import add, product
+from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.stepping.pieces.codes import (
+    CORNER,
+    FINISHED,
+    GROUND,
+    LCP_FAILED,
+    NOBODY,
+    NOT_FINITE,
+    OPEN,
+    ROUNDING,
+)
+from lcpstep.stepping.pieces.impulses import strike, zero_speeds
+from lcpstep.stepping.pieces.keep import keep
+from lcpstep.stepping.pieces.magnitudes import speed_terms
+from lcpstep.stepping.pieces.smooth import mobility, renew_forces, renew_mobility
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.switches import idle, stick, turn
 
 
 def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:

@@ -7,18 +7,17 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import external_force, moves, obstacle
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.one_row import keep_one
-    from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-    from lcpstep.kernels.record import Record
-    from lcpstep.pointers import abs, inf
-    from lcpstep.stepping.pieces.carried import PUT_BACK
-    from lcpstep.stepping.pieces.codes import SAME_TIME
-    from lcpstep.stepping.pieces.keep import keep
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import within
+from lcpstep.kernels.dynamics import external_force, moves, obstacle
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.one_row import keep_one
+from lcpstep.kernels.quadratic import first_zero, may_reach_zero
+from lcpstep.kernels.record import Record
+from lcpstep.pointers import abs, inf
+from lcpstep.stepping.pieces.carried import PUT_BACK
+from lcpstep.stepping.pieces.codes import SAME_TIME
+from lcpstep.stepping.pieces.keep import keep
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.times import within
 
 
 def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, last: int) -> None:

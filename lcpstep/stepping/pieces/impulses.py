@@ -11,41 +11,40 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.together import CROSSED, TOGETHER, gap_rounding, moment_untold, order_matters
-    from lcpstep.kernels.vectors import clear, product
-    from lcpstep.pointers import Doubles, abs, inf, max, min
-    from lcpstep.stepping.pieces.chosen import solve_chosen
-    from lcpstep.stepping.pieces.codes import (
-        ACCUMULATION,
-        CLOSED,
-        CORNER,
-        EPS,
-        GROUND,
-        IMPACT,
-        INERTIA,
-        LEFT,
-        OPEN,
-        ROUNDING,
-    )
-    from lcpstep.stepping.pieces.corners import choose_jumping
-    from lcpstep.stepping.pieces.magnitudes import LEAST, speed_terms
-    from lcpstep.stepping.pieces.refine import NONE
-    from lcpstep.stepping.pieces.sequences import (
-        IN_A_ROW,
-        MANY_AT_ONCE,
-        at_this_instant,
-        choose_collapsing,
-        choose_connected,
-        closes,
-        measure_rates,
-        note_hit,
-    )
-    from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import idle, release, stick, turn
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.together import CROSSED, TOGETHER, gap_rounding, moment_untold, order_matters
+from lcpstep.kernels.vectors import clear, product
+from lcpstep.pointers import Doubles, abs, inf, max, min
+from lcpstep.stepping.pieces.chosen import solve_chosen
+from lcpstep.stepping.pieces.codes import (
+    ACCUMULATION,
+    CLOSED,
+    CORNER,
+    EPS,
+    GROUND,
+    IMPACT,
+    INERTIA,
+    LEFT,
+    OPEN,
+    ROUNDING,
+)
+from lcpstep.stepping.pieces.corners import choose_jumping
+from lcpstep.stepping.pieces.magnitudes import LEAST, speed_terms
+from lcpstep.stepping.pieces.refine import NONE
+from lcpstep.stepping.pieces.sequences import (
+    IN_A_ROW,
+    MANY_AT_ONCE,
+    at_this_instant,
+    choose_collapsing,
+    choose_connected,
+    closes,
+    measure_rates,
+    note_hit,
+)
+from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.switches import idle, release, stick, turn
 
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.linear import grow_factor, solve_factored
-    from lcpstep.pointers import Doubles, max
-    from lcpstep.stepping.pieces.state import Work
+from lcpstep.kernels.linear import grow_factor, solve_factored
+from lcpstep.pointers import Doubles, max
+from lcpstep.stepping.pieces.state import Work
 
 
 def bear_on_independent(w: Work, W: Doubles, n: int) -> None:

@@ -9,17 +9,16 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import gap_rates
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.sudden import coarseness
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import abs, max, min
-    from lcpstep.stepping.pieces.codes import CLOSED
-    from lcpstep.stepping.pieces.corners import JUMP
-    from lcpstep.stepping.pieces.loop import Steps
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import within
+from lcpstep.kernels.dynamics import gap_rates
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.sudden import coarseness
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import abs, max, min
+from lcpstep.stepping.pieces.codes import CLOSED
+from lcpstep.stepping.pieces.corners import JUMP
+from lcpstep.stepping.pieces.loop import Steps
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.times import within
 
 BRIEF = 2.0**-10  # of a piece: what turns within so short a time, its sides included, jumps there
 SIDES = 16.0  # of half of such a turn: how far from its middle nothing is left of it

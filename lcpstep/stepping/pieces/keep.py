@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import gap_rates
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import max, min
-    from lcpstep.stepping.pieces.smooth import look_along, refactor, settle_state
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import within
+from lcpstep.kernels.dynamics import gap_rates
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import max, min
+from lcpstep.stepping.pieces.smooth import look_along, refactor, settle_state
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.times import within
 
 
 def keep_times(w: Work, record: Record, now: float, before: float) -> None:

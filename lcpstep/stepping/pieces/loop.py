@@ -10,33 +10,32 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import copy, finite
-    from lcpstep.pointers import inf, max
-    from lcpstep.stepping.pieces.begin import begin_motion
-    from lcpstep.stepping.pieces.carried import put_kept_back
-    from lcpstep.stepping.pieces.codes import (
-        AGAIN,
-        BUFFER_FULL,
-        CORNER,
-        FINISHED,
-        NOBODY,
-        NOT_FINITE,
-        OPEN,
-        STOPPED,
-        TOO_MANY_EVENTS,
-    )
-    from lcpstep.stepping.pieces.corners import find_corners, go_beyond, obstacles_move
-    from lcpstep.stepping.pieces.event import remeasure, struck_at_start
-    from lcpstep.stepping.pieces.glide import glide
-    from lcpstep.stepping.pieces.impulses import zero_speeds
-    from lcpstep.stepping.pieces.keep import keep, keep_now
-    from lcpstep.stepping.pieces.settle import settle
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import just_after
+from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import copy, finite
+from lcpstep.pointers import inf, max
+from lcpstep.stepping.pieces.begin import begin_motion
+from lcpstep.stepping.pieces.carried import put_kept_back
+from lcpstep.stepping.pieces.codes import (
+    AGAIN,
+    BUFFER_FULL,
+    CORNER,
+    FINISHED,
+    NOBODY,
+    NOT_FINITE,
+    OPEN,
+    STOPPED,
+    TOO_MANY_EVENTS,
+)
+from lcpstep.stepping.pieces.corners import find_corners, go_beyond, obstacles_move
+from lcpstep.stepping.pieces.event import remeasure, struck_at_start
+from lcpstep.stepping.pieces.glide import glide
+from lcpstep.stepping.pieces.impulses import zero_speeds
+from lcpstep.stepping.pieces.keep import keep, keep_now
+from lcpstep.stepping.pieces.settle import settle
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.times import just_after
 
 
 class Steps(Stepwise):

@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.model import Model
-    from lcpstep.pointers import abs
-    from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.kernels.model import Model
+from lcpstep.pointers import abs
+from lcpstep.stepping.pieces.state import Plan, Work
 
 FAINT = 1e-10  # of the velocities that have acted in a step: the end of a sequence of events at one instant
 LEAST = 1e-290  # numbers near the smallest ones have no relative rounding

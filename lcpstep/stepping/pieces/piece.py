@@ -8,40 +8,39 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import gaps, moves, obstacle
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.together import gap_rounding
-    from lcpstep.kernels.vectors import copy, distance, product
-    from lcpstep.pointers import abs, after, max, min
-    from lcpstep.stepping.pieces.codes import (
-        CLOSED,
-        EPS,
-        FINISHED,
-        LCP_FAILED,
-        LEFT,
-        NOBODY,
-        NOT_FINITE,
-        OPEN,
-        SAME_TIME,
-    )
-    from lcpstep.stepping.pieces.contact_forces import hold, land
-    from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
-    from lcpstep.stepping.pieces.smooth import (
-        ON_THE_SURFACE,
-        accelerate,
-        advance,
-        gap_bias,
-        look_along,
-        measure,
-        put_on_surface,
-        renew_mobility,
-    )
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import stick
-    from lcpstep.stepping.pieces.times import driven_by, within
+from lcpstep.kernels.dynamics import gaps, moves, obstacle
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.quadratic import first_zero, may_reach_zero
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.together import gap_rounding
+from lcpstep.kernels.vectors import copy, distance, product
+from lcpstep.pointers import abs, after, max, min
+from lcpstep.stepping.pieces.codes import (
+    CLOSED,
+    EPS,
+    FINISHED,
+    LCP_FAILED,
+    LEFT,
+    NOBODY,
+    NOT_FINITE,
+    OPEN,
+    SAME_TIME,
+)
+from lcpstep.stepping.pieces.contact_forces import hold, land
+from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
+from lcpstep.stepping.pieces.smooth import (
+    ON_THE_SURFACE,
+    accelerate,
+    advance,
+    gap_bias,
+    look_along,
+    measure,
+    put_on_surface,
+    renew_mobility,
+)
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.switches import stick
+from lcpstep.stepping.pieces.times import driven_by, within
 
 POLISHING = 8  # Newton iterations onto a gap that is no quadratic
 BRIEF = 1.0 / 8.0  # of a piece: hops that last no longer obey the acceleration at their beginning

@@ -12,23 +12,22 @@ Solving Ordinary Differential Equations I, sections I.8 and II.1; G. Osorio, eq.
 
 from __future__ import annotations
 
+from math import cos, isfinite, sin
+
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from math import cos, isfinite, sin
-
-    from lcpstep.arrays import doubles
-    from lcpstep.kernels.dynamics import gap_rates, gaps, obstacle
-    from lcpstep.kernels.linear import grow_factor, solve_factored
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.turn import Turn
-    from lcpstep.kernels.vectors import add, copy, product
-    from lcpstep.pointers import Doubles, after, max
-    from lcpstep.stepping.pieces.codes import CLOSED
-    from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, respond
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import within
+from lcpstep.arrays import doubles
+from lcpstep.kernels.dynamics import gap_rates, gaps, obstacle
+from lcpstep.kernels.linear import grow_factor, solve_factored
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.turn import Turn
+from lcpstep.kernels.vectors import add, copy, product
+from lcpstep.pointers import Doubles, after, max
+from lcpstep.stepping.pieces.codes import CLOSED
+from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, respond
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.times import within
 
 DEGREE, QUINTIC = 22, 5  # of Taylor's polynomials and of Hermite's
 PROBES = 4  # of contact forces on a piece

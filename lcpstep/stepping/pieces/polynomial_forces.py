@@ -9,20 +9,19 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import gap_rates
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import Doubles
-    from lcpstep.stepping.pieces.codes import CLOSED, GROUND, LEFT, OPEN, WHOLE
-    from lcpstep.stepping.pieces.contact_forces import hold
-    from lcpstep.stepping.pieces.keep import keep
-    from lcpstep.stepping.pieces.polynomial import Polynomial, acceleration, biases
-    from lcpstep.stepping.pieces.scan import SOON
-    from lcpstep.stepping.pieces.smooth import free_acceleration, respond
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import within
+from lcpstep.kernels.dynamics import gap_rates
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import Doubles
+from lcpstep.stepping.pieces.codes import CLOSED, GROUND, LEFT, OPEN, WHOLE
+from lcpstep.stepping.pieces.contact_forces import hold
+from lcpstep.stepping.pieces.keep import keep
+from lcpstep.stepping.pieces.polynomial import Polynomial, acceleration, biases
+from lcpstep.stepping.pieces.scan import SOON
+from lcpstep.stepping.pieces.smooth import free_acceleration, respond
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.times import within
 
 UNDECIDED = -1.0  # in place of a time ahead
 

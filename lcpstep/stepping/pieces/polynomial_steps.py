@@ -7,56 +7,55 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import gap_rates
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import copy, distance, product
-    from lcpstep.pointers import abs, max, min
-    from lcpstep.stepping.pieces.codes import (
-        AGAIN,
-        CLOSED,
-        CORNER,
-        EPS,
-        FINISHED,
-        GROUND,
-        LCP_FAILED,
-        LEFT,
-        NOBODY,
-        NOT_FINITE,
-        ROUNDING,
-        SAME_TIME,
-    )
-    from lcpstep.stepping.pieces.event import lift
-    from lcpstep.stepping.pieces.impulses import strike
-    from lcpstep.stepping.pieces.jumps import breaks
-    from lcpstep.stepping.pieces.keep import keep
-    from lcpstep.stepping.pieces.loop import Steps, is_finite
-    from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
-    from lcpstep.stepping.pieces.piece import penetrates
-    from lcpstep.stepping.pieces.polynomial import (
-        NODES,
-        WEIGHTS,
-        Polynomial,
-        acceleration,
-        biases,
-        expand,
-        force_at,
-        on_surface,
-        state_at,
-    )
-    from lcpstep.stepping.pieces.polynomial_forces import UNDECIDED, load
-    from lcpstep.stepping.pieces.scan import LOW, NOWHERE, first_landing, first_release, hop_at, is_low
-    from lcpstep.stepping.pieces.smooth import (
-        measure,
-        newton_step,
-        put_on_surface,
-        renew_mobility,
-        settle_state,
-    )
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import idle, release, stick, turn
-    from lcpstep.stepping.pieces.times import at_corner, within
+from lcpstep.kernels.dynamics import gap_rates
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import copy, distance, product
+from lcpstep.pointers import abs, max, min
+from lcpstep.stepping.pieces.codes import (
+    AGAIN,
+    CLOSED,
+    CORNER,
+    EPS,
+    FINISHED,
+    GROUND,
+    LCP_FAILED,
+    LEFT,
+    NOBODY,
+    NOT_FINITE,
+    ROUNDING,
+    SAME_TIME,
+)
+from lcpstep.stepping.pieces.event import lift
+from lcpstep.stepping.pieces.impulses import strike
+from lcpstep.stepping.pieces.jumps import breaks
+from lcpstep.stepping.pieces.keep import keep
+from lcpstep.stepping.pieces.loop import Steps, is_finite
+from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
+from lcpstep.stepping.pieces.piece import penetrates
+from lcpstep.stepping.pieces.polynomial import (
+    NODES,
+    WEIGHTS,
+    Polynomial,
+    acceleration,
+    biases,
+    expand,
+    force_at,
+    on_surface,
+    state_at,
+)
+from lcpstep.stepping.pieces.polynomial_forces import UNDECIDED, load
+from lcpstep.stepping.pieces.scan import LOW, NOWHERE, first_landing, first_release, hop_at, is_low
+from lcpstep.stepping.pieces.smooth import (
+    measure,
+    newton_step,
+    put_on_surface,
+    renew_mobility,
+    settle_state,
+)
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.switches import idle, release, stick, turn
+from lcpstep.stepping.pieces.times import at_corner, within
 
 SLOW = 1e-3  # of a step: a touch is no event twice within so short a time
 

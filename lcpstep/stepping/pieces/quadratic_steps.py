@@ -8,22 +8,21 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import external_force, gap_rates, moves, obstacle
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import product
-    from lcpstep.pointers import abs, min
-    from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
-    from lcpstep.stepping.pieces.event import event
-    from lcpstep.stepping.pieces.jumps import breaks
-    from lcpstep.stepping.pieces.loop import Steps, is_finite
-    from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
-    from lcpstep.stepping.pieces.race import race
-    from lcpstep.stepping.pieces.smooth import look_along, renew_forces
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import idle
-    from lcpstep.stepping.pieces.times import at_corner, within
+from lcpstep.kernels.dynamics import external_force, gap_rates, moves, obstacle
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import abs, min
+from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
+from lcpstep.stepping.pieces.event import event
+from lcpstep.stepping.pieces.jumps import breaks
+from lcpstep.stepping.pieces.loop import Steps, is_finite
+from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
+from lcpstep.stepping.pieces.race import race
+from lcpstep.stepping.pieces.smooth import look_along, renew_forces
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.switches import idle
+from lcpstep.stepping.pieces.times import at_corner, within
 
 
 class QuadraticSteps(Steps):

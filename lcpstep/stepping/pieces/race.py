@@ -12,13 +12,12 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-    from lcpstep.kernels.record import Record
-    from lcpstep.pointers import abs, inf
-    from lcpstep.stepping.pieces.codes import GROUND, IMPACT, ROUNDING
-    from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.quadratic import first_zero, may_reach_zero
+from lcpstep.kernels.record import Record
+from lcpstep.pointers import abs, inf
+from lcpstep.stepping.pieces.codes import GROUND, IMPACT, ROUNDING
+from lcpstep.stepping.pieces.state import Plan, Work
 
 CLOSE = 1e-9  # of a step: impacts of a contact as close as this,
 SHORT = 1e-7  # and hops as short as this, are left to the general treatment

@@ -18,18 +18,16 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.linear import grow_factor, solve_definite, solve_factored
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import add, clear, copy, largest, product
+from lcpstep.lcp.kernel import solve_small
 from lcpstep.lcp.status import SOLVED
-
-if not cython.compiled:
-    from lcpstep.kernels.linear import grow_factor, solve_definite, solve_factored
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import add, clear, copy, largest, product
-    from lcpstep.lcp.kernel import solve_small
-    from lcpstep.pointers import Doubles, abs, after, max, min
-    from lcpstep.stepping.pieces.codes import EPS, ROUNDING
-    from lcpstep.stepping.pieces.independent import bear_on_independent
-    from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
-    from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.pointers import Doubles, abs, after, max, min
+from lcpstep.stepping.pieces.codes import EPS, ROUNDING
+from lcpstep.stepping.pieces.independent import bear_on_independent
+from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
+from lcpstep.stepping.pieces.state import Plan, Work
 
 NONE, FORCES, IMPULSES = range(3)  # what a guess is of
 REFINEMENTS = 6

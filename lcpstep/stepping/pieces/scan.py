@@ -8,20 +8,19 @@ g = g_0 + tau mean, which keeps all digits.
 
 from __future__ import annotations
 
+from math import isfinite
+
 import cython
 
-if not cython.compiled:
-    from math import isfinite
-
-    from lcpstep.kernels.dynamics import moves
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs, after, max, min
-    from lcpstep.stepping.pieces.codes import CLOSED, EPS, LEFT, NOBODY, OPEN, ROUNDING
-    from lcpstep.stepping.pieces.contact_forces import pulls, weighs
-    from lcpstep.stepping.pieces.magnitudes import speed_terms
-    from lcpstep.stepping.pieces.polynomial import NODES, PROBES, WEIGHTS, Polynomial, contacts_at, force_at
-    from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.kernels.dynamics import moves
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import abs, after, max, min
+from lcpstep.stepping.pieces.codes import CLOSED, EPS, LEFT, NOBODY, OPEN, ROUNDING
+from lcpstep.stepping.pieces.contact_forces import pulls, weighs
+from lcpstep.stepping.pieces.magnitudes import speed_terms
+from lcpstep.stepping.pieces.polynomial import NODES, PROBES, WEIGHTS, Polynomial, contacts_at, force_at
+from lcpstep.stepping.pieces.state import Plan, Work
 
 NOWHERE = -2
 PARTS = 4  # intervals of a piece

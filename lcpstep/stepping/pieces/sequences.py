@@ -11,14 +11,13 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.model import Model
-    from lcpstep.pointers import abs
-    from lcpstep.stepping.pieces.codes import CLOSED, OPEN, ROUNDING
-    from lcpstep.stepping.pieces.magnitudes import faint
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER
-    from lcpstep.stepping.pieces.times import driven_by
+from lcpstep.kernels.model import Model
+from lcpstep.pointers import abs
+from lcpstep.stepping.pieces.codes import CLOSED, OPEN, ROUNDING
+from lcpstep.stepping.pieces.magnitudes import faint
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.switches import AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER
+from lcpstep.stepping.pieces.times import driven_by
 
 SHORT = 1e-7  # of a step: hops of a single contact below it are taken as one
 IN_A_ROW = 8  # so many impacts, each at the instant of the one before, are a collapse once faint or short

@@ -13,43 +13,42 @@ freedom dynamics (1988).
 
 from __future__ import annotations
 
+from math import pow
+
 import cython
 
-if not cython.compiled:
-    from math import pow
-
-    from lcpstep.kernels.dynamics import gap_rates
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import add, product
-    from lcpstep.pointers import abs, after, max, min
-    from lcpstep.stepping.pieces.chosen import solve_chosen
-    from lcpstep.stepping.pieces.codes import (
-        ACCUMULATION,
-        CLOSED,
-        FINISHED,
-        GROUND,
-        IMPACT,
-        INERTIA,
-        LCP_FAILED,
-        NOT_FINITE,
-        ROUNDING,
-    )
-    from lcpstep.stepping.pieces.impulses import touch
-    from lcpstep.stepping.pieces.keep import keep
-    from lcpstep.stepping.pieces.magnitudes import speed_terms
-    from lcpstep.stepping.pieces.refine import NONE
-    from lcpstep.stepping.pieces.smooth import (
-        gap_bias,
-        measure,
-        put_on_surface,
-        refactor,
-        renew_forces,
-        renew_mobility,
-    )
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.switches import SHORT_TOGETHER, release, stick
-    from lcpstep.stepping.pieces.times import within
+from lcpstep.kernels.dynamics import gap_rates
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import add, product
+from lcpstep.pointers import abs, after, max, min
+from lcpstep.stepping.pieces.chosen import solve_chosen
+from lcpstep.stepping.pieces.codes import (
+    ACCUMULATION,
+    CLOSED,
+    FINISHED,
+    GROUND,
+    IMPACT,
+    INERTIA,
+    LCP_FAILED,
+    NOT_FINITE,
+    ROUNDING,
+)
+from lcpstep.stepping.pieces.impulses import touch
+from lcpstep.stepping.pieces.keep import keep
+from lcpstep.stepping.pieces.magnitudes import speed_terms
+from lcpstep.stepping.pieces.refine import NONE
+from lcpstep.stepping.pieces.smooth import (
+    gap_bias,
+    measure,
+    put_on_surface,
+    refactor,
+    renew_forces,
+    renew_mobility,
+)
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.switches import SHORT_TOGETHER, release, stick
+from lcpstep.stepping.pieces.times import within
 
 
 def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:

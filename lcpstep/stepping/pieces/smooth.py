@@ -14,16 +14,15 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.acceleration import factor_mass, response
-    from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, total_force
-    from lcpstep.kernels.linear import factorise, grow_factor, solve, solve_factored
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import add, copy, product
-    from lcpstep.pointers import Doubles, abs, after, max, min
-    from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
-    from lcpstep.stepping.pieces.state import Plan, Work
-    from lcpstep.stepping.pieces.times import within
+from lcpstep.kernels.acceleration import factor_mass, response
+from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, total_force
+from lcpstep.kernels.linear import factorise, grow_factor, solve, solve_factored
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import add, copy, product
+from lcpstep.pointers import Doubles, abs, after, max, min
+from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
+from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.times import within
 
 LANDINGS = 6  # Newton iterations onto the surface
 ON_THE_SURFACE = 0.0625  # of what counts as closed: where these end

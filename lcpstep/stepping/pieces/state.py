@@ -7,12 +7,11 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles, indices
-    from lcpstep.kernels.bracket import Bracket
-    from lcpstep.kernels.sudden import Sudden
-    from lcpstep.lcp.workspace import Workspace
-    from lcpstep.pointers import Doubles, Indices, after, indices_after, inf
+from lcpstep.arrays import doubles, indices
+from lcpstep.kernels.bracket import Bracket
+from lcpstep.kernels.sudden import Sudden
+from lcpstep.lcp.workspace import Workspace
+from lcpstep.pointers import Doubles, Indices, after, indices_after, inf
 
 VECTORS = [
     "q", "v", "free", "a", "force", "next_force", "q_base", "q_try", "v_try", "a_try", "jolt", "q_from",

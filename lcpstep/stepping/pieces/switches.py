@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.pointers import abs, max, min
-    from lcpstep.stepping.pieces.codes import CLOSED, GROUND, OPEN, RELEASE, STICK
-    from lcpstep.stepping.pieces.magnitudes import acceleration_terms, faint
-    from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.pointers import abs, max, min
+from lcpstep.stepping.pieces.codes import CLOSED, GROUND, OPEN, RELEASE, STICK
+from lcpstep.stepping.pieces.magnitudes import acceleration_terms, faint
+from lcpstep.stepping.pieces.state import Plan, Work
 
 COLLAPSE = 1e-9  # of a step: what happens as close in time as this happens at one instant
 FIRST = 1e-7  # of a step: the stretch over which that is settled first; hops that no step can follow

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.pointers import abs, max, min
-    from lcpstep.stepping.pieces.codes import EPS, LATE
-    from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.pointers import abs, max, min
+from lcpstep.stepping.pieces.codes import EPS, LATE
+from lcpstep.stepping.pieces.state import Plan, Work
 
 
 def within(w: Work, t: float) -> float:

@@ -15,17 +15,15 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
-
-if not cython.compiled:
-    from lcpstep.events.contacts.guards import first_fall, read
-    from lcpstep.events.contacts.state import GUARDS
-    from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
-    from lcpstep.events.rows.contacts import rubs
-    from lcpstep.events.rows.equations import measure_biases, renew_rates, size_of
-    from lcpstep.kernels.clock import NOISE, RESOLUTION
-    from lcpstep.kernels.vectors import copy, product
-    from lcpstep.pointers import Doubles, abs, after, max, min
-    from lcpstep.stepping.rubbing.strides import Strides, push_end_back
+from lcpstep.events.contacts.guards import first_fall, read
+from lcpstep.events.contacts.state import GUARDS
+from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
+from lcpstep.events.rows.contacts import rubs
+from lcpstep.events.rows.equations import measure_biases, renew_rates, size_of
+from lcpstep.kernels.clock import NOISE, RESOLUTION
+from lcpstep.kernels.vectors import copy, product
+from lcpstep.pointers import Doubles, abs, after, max, min
+from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 NOWHERE = -1.0  # in place of a time: the guard does not act, its polynomial was wrong
 

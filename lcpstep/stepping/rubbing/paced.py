@@ -10,28 +10,26 @@ them from their polynomials. Source: E. Hairer, S. Norsett, G. Wanner, Solving O
 
 from __future__ import annotations
 
+from math import pow
+
 import cython
 
+from lcpstep.events.contacts.state import GUARDS
+from lcpstep.events.contacts.step import mark_resting
+from lcpstep.events.rows.jumps import farthest_off, find_jump
+from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
-
-if not cython.compiled:
-    from math import pow
-
-    from lcpstep.events.contacts.state import GUARDS
-    from lcpstep.events.contacts.step import mark_resting
-    from lcpstep.events.rows.jumps import farthest_off, find_jump
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.vectors import copy, distance, largest
-    from lcpstep.pointers import abs, after, inf, max, min
-    from lcpstep.stepping.rubbing.found import (
-        curve,
-        is_motion,
-        measure_base,
-        note_arrival,
-        note_middle,
-        read_guards,
-    )
-    from lcpstep.stepping.rubbing.strides import Strides, push_end_back
+from lcpstep.kernels.vectors import copy, distance, largest
+from lcpstep.pointers import abs, after, inf, max, min
+from lcpstep.stepping.rubbing.found import (
+    curve,
+    is_motion,
+    measure_base,
+    note_arrival,
+    note_middle,
+    read_guards,
+)
+from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 ROUNDING = 8 * RESOLUTION  # relative differences that are no errors
 SAFETY, LEAST, MOST = 0.9, 0.2, 2.0  # of the change of step

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.events.contacts.held import know_rows
-    from lcpstep.events.contacts.loose import straying
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import after
-    from lcpstep.stepping.rubbing.stride import stride
-    from lcpstep.stepping.rubbing.strides import Strides, push_end_back
+from lcpstep.events.contacts.held import know_rows
+from lcpstep.events.contacts.loose import straying
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import after
+from lcpstep.stepping.rubbing.stride import stride
+from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 
 class RubbingSteps(Strides):

@@ -5,39 +5,37 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN
+from lcpstep.events.contacts.equations import measure, measure_gaps
+from lcpstep.events.contacts.loose import first_stray
+from lcpstep.events.contacts.modes import decide, undecided
+from lcpstep.events.contacts.moments import of_sliding
+from lcpstep.events.contacts.state import GUARDS
+from lcpstep.events.contacts.step import arrive, find_standing, mark_resting, of_force
+from lcpstep.events.contacts.surfaces import FREE
+from lcpstep.events.rows.contacts import add_impulse, hold_modes, list_by_row, still
+from lcpstep.events.rows.equations import respond_to
+from lcpstep.events.rows.held import constrain
+from lcpstep.events.rows.jumps import breaks
+from lcpstep.events.rows.keep import keep, keep_event
+from lcpstep.events.rows.projection import project
+from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.record import Record
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, PROJECTION_FAILED
-
-if not cython.compiled:
-    from lcpstep.events.contacts.equations import measure, measure_gaps
-    from lcpstep.events.contacts.loose import first_stray
-    from lcpstep.events.contacts.modes import decide, undecided
-    from lcpstep.events.contacts.moments import of_sliding
-    from lcpstep.events.contacts.state import GUARDS
-    from lcpstep.events.contacts.step import arrive, find_standing, mark_resting, of_force
-    from lcpstep.events.contacts.surfaces import FREE
-    from lcpstep.events.rows.contacts import add_impulse, hold_modes, list_by_row, still
-    from lcpstep.events.rows.equations import respond_to
-    from lcpstep.events.rows.held import constrain
-    from lcpstep.events.rows.jumps import breaks
-    from lcpstep.events.rows.keep import keep, keep_event
-    from lcpstep.events.rows.projection import project
-    from lcpstep.kernels.clock import NOISE
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.tally import Tally
-    from lcpstep.kernels.vectors import add, clear, copy, product
-    from lcpstep.pointers import abs, after, max, min
-    from lcpstep.stepping.rubbing.found import (
-        NOWHERE,
-        arm,
-        first_event,
-        hides,
-        locate,
-        note_arrival,
-        note_base,
-        read_guards,
-    )
-    from lcpstep.stepping.rubbing.paced import pace
-    from lcpstep.stepping.rubbing.strides import Strides, push_end_back
+from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import add, clear, copy, product
+from lcpstep.pointers import abs, after, max, min
+from lcpstep.stepping.rubbing.found import (
+    NOWHERE,
+    arm,
+    first_event,
+    hides,
+    locate,
+    note_arrival,
+    note_base,
+    read_guards,
+)
+from lcpstep.stepping.rubbing.paced import pace
+from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 # Of a step: where the forces after a release, or a slip, are looked at, and how much further each time that nothing
 # is seen of it there

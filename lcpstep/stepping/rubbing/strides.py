@@ -18,15 +18,14 @@ from typing import Any
 import cython
 import numpy as np
 
-if not cython.compiled:
-    from lcpstep.arrays import doubles
-    from lcpstep.events.contacts.smooth import Smooth
-    from lcpstep.events.contacts.state import GUARDS
-    from lcpstep.events.rows.contacts import list_by_row
-    from lcpstep.events.rows.projection import push_onto_rows, put_on_rows, take_rows
-    from lcpstep.kernels.clock import RESOLUTION
-    from lcpstep.kernels.vectors import add, clear, copy, distance, finite, largest
-    from lcpstep.pointers import Doubles, abs, after, min
+from lcpstep.arrays import doubles
+from lcpstep.events.contacts.smooth import Smooth
+from lcpstep.events.contacts.state import GUARDS
+from lcpstep.events.rows.contacts import list_by_row
+from lcpstep.events.rows.projection import push_onto_rows, put_on_rows, take_rows
+from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.vectors import add, clear, copy, distance, finite, largest
+from lcpstep.pointers import Doubles, abs, after, min
 
 ROUNDING = 64.0 * RESOLUTION  # of a position
 ARRIVAL = 4  # place of the rates at the end of a step, after those at its stages

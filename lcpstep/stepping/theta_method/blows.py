@@ -18,16 +18,14 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import clear, copy, copy_indices, largest, product, size_of_product
+from lcpstep.pointers import max, min
 from lcpstep.stepping.steps import LEFT, RESOLUTION, TURNS
 from lcpstep.stepping.theta_method.codes import FINISHED, NEED_LCP
-
-if not cython.compiled:
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import clear, copy, copy_indices, largest, product, size_of_product
-    from lcpstep.pointers import max, min
-    from lcpstep.stepping.theta_method.moving import Blows, Plan, Rows, State
-    from lcpstep.stepping.theta_method.responses import prepare
-    from lcpstep.stepping.theta_method.row_impulses import forced, impulses, pose, take_part
+from lcpstep.stepping.theta_method.moving import Blows, Plan, Rows, State
+from lcpstep.stepping.theta_method.responses import prepare
+from lcpstep.stepping.theta_method.row_impulses import forced, impulses, pose, take_part
 
 
 def separates(plan: Plan, s: State, c: Rows, b: Blows, n_a: int) -> bool:

@@ -14,13 +14,12 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import mass, total_force
-    from lcpstep.kernels.linear import factorise, positive_definite, solve
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import add, copy, largest, product
-    from lcpstep.pointers import Doubles, abs, max
-    from lcpstep.stepping.theta_method.moving import Plan, State
+from lcpstep.kernels.dynamics import mass, total_force
+from lcpstep.kernels.linear import factorise, positive_definite, solve
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import add, copy, largest, product
+from lcpstep.pointers import Doubles, abs, max
+from lcpstep.stepping.theta_method.moving import Plan, State
 
 DIFFERENCE = 1e-7  # relative; A only steers the iteration, its error does not enter the motion
 SLOW = 1e-3  # velocities below it are as good as none, as are this share of what the forces make in a step,

@@ -9,17 +9,15 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.dynamics import external_force, moves, obstacle, varies
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.one_row import keep_one
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import finite
+from lcpstep.pointers import abs, max
 from lcpstep.stepping.steps import RESOLUTION, RESTING, UNTOLD
 from lcpstep.stepping.theta_method.codes import IMPACT, NO_EVENT, RELEASE, STICK
-
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import external_force, moves, obstacle, varies
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.one_row import keep_one
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import finite
-    from lcpstep.pointers import abs, max
-    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
+from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 
 EVENTS = 2  # that a step may note
 

@@ -16,18 +16,16 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.acceleration import factor_mass, response
+from lcpstep.kernels.coulomb import solve_contacts
+from lcpstep.kernels.dynamics import gap_rates, gaps
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import abs, after, inf, max
+from lcpstep.stepping.constraints.directions import mobilities
+from lcpstep.stepping.constraints.joint_rows import NEARLY, arrived, distribute, eliminate
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, PROJECTION_FAILED
-
-if not cython.compiled:
-    from lcpstep.kernels.acceleration import factor_mass, response
-    from lcpstep.kernels.coulomb import solve_contacts
-    from lcpstep.kernels.dynamics import gap_rates, gaps
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import copy
-    from lcpstep.pointers import abs, after, inf, max
-    from lcpstep.stepping.constraints.directions import mobilities
-    from lcpstep.stepping.constraints.joint_rows import NEARLY, arrived, distribute, eliminate
-    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
+from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 
 PROJECTIONS = 20  # of Newton
 

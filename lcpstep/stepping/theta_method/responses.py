@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import gap_rates
-    from lcpstep.kernels.linear import factorise, solve
-    from lcpstep.kernels.model import Model
-    from lcpstep.pointers import after
-    from lcpstep.stepping.constraints.directions import mobilities
-    from lcpstep.stepping.theta_method.implicit import REFRESH, compliance
-    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
+from lcpstep.kernels.dynamics import gap_rates
+from lcpstep.kernels.linear import factorise, solve
+from lcpstep.kernels.model import Model
+from lcpstep.pointers import after
+from lcpstep.stepping.constraints.directions import mobilities
+from lcpstep.stepping.theta_method.implicit import REFRESH, compliance
+from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 
 FOLLOWED = 12  # iterations, by which contacts' rows are at the end of the step as far as they ever are
 

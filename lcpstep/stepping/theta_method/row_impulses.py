@@ -9,21 +9,19 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.coulomb import motion_of, solve_contacts
+from lcpstep.kernels.energetic import strike_in_turn
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.repose import AT_REST
+from lcpstep.kernels.stiction import rest_where_possible, solve_steps
+from lcpstep.kernels.vectors import finite, largest, product, size_of_product
+from lcpstep.pointers import Doubles, Indices, abs, after, max
+from lcpstep.stepping.constraints.joint_rows import distribute, eliminate, lost
 from lcpstep.stepping.steps import CANCELLED, CONVERGED, NO_APPROACH, RESOLUTION, ROUNDING
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
-
-if not cython.compiled:
-    from lcpstep.kernels.coulomb import motion_of, solve_contacts
-    from lcpstep.kernels.energetic import strike_in_turn
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.repose import AT_REST
-    from lcpstep.kernels.stiction import rest_where_possible, solve_steps
-    from lcpstep.kernels.vectors import finite, largest, product, size_of_product
-    from lcpstep.pointers import Doubles, Indices, abs, after, max
-    from lcpstep.stepping.constraints.joint_rows import distribute, eliminate, lost
-    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
-    from lcpstep.stepping.theta_method.responses import respond
-    from lcpstep.stepping.theta_method.turned_rows import put_rows_on_joints, sweep_out_turned
+from lcpstep.stepping.theta_method.moving import Plan, Rows, State
+from lcpstep.stepping.theta_method.responses import respond
+from lcpstep.stepping.theta_method.turned_rows import put_rows_on_joints, sweep_out_turned
 
 UNTOLD = 1e-9  # of the terms of a rate: what joints may leave of it where they leave nothing of its row
 

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
+from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, total_force
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import copy, finite, product
+from lcpstep.pointers import min
 from lcpstep.stepping.steps import LATE
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINITE
-
-if not cython.compiled:
-    from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
-    from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, total_force
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import Record
-    from lcpstep.kernels.vectors import copy, finite, product
-    from lcpstep.pointers import min
-    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
-    from lcpstep.stepping.theta_method.one_contact import in_registers
-    from lcpstep.stepping.theta_method.theta_step import take_step
+from lcpstep.stepping.theta_method.moving import Plan, Rows, State
+from lcpstep.stepping.theta_method.one_contact import in_registers
+from lcpstep.stepping.theta_method.theta_step import take_step
 
 
 class Steps(Stepwise):

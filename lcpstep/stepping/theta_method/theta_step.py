@@ -26,7 +26,15 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.dynamics import external_force, gap_rates, gaps
+from lcpstep.kernels.layout import COLUMNS
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.record import Record
+from lcpstep.kernels.vectors import clear, copy, finite, product
+from lcpstep.pointers import abs, after, whole
+from lcpstep.stepping.constraints.joint_rows import joints_hold
 from lcpstep.stepping.steps import RESOLUTION, RESTING, UNTOLD
+from lcpstep.stepping.theta_method.blows import one_after_another, separates
 from lcpstep.stepping.theta_method.codes import (
     FINISHED,
     JOINTS_FAILED,
@@ -36,27 +44,18 @@ from lcpstep.stepping.theta_method.codes import (
     NOT_FINITE,
     RELEASE,
 )
-
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import external_force, gap_rates, gaps
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.record import COLUMNS, Record
-    from lcpstep.kernels.vectors import clear, copy, finite, product
-    from lcpstep.pointers import abs, after, whole
-    from lcpstep.stepping.constraints.joint_rows import joints_hold
-    from lcpstep.stepping.theta_method.blows import one_after_another, separates
-    from lcpstep.stepping.theta_method.implicit import linearise
-    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
-    from lcpstep.stepping.theta_method.one_contact import closed_since, kind_of
-    from lcpstep.stepping.theta_method.repair import project
-    from lcpstep.stepping.theta_method.responses import prepare
-    from lcpstep.stepping.theta_method.row_impulses import (
-        apply,
-        apply_once,
-        impulses,
-        note_sticking,
-        take_part,
-    )
+from lcpstep.stepping.theta_method.implicit import linearise
+from lcpstep.stepping.theta_method.moving import Plan, Rows, State
+from lcpstep.stepping.theta_method.one_contact import closed_since, kind_of
+from lcpstep.stepping.theta_method.repair import project
+from lcpstep.stepping.theta_method.responses import prepare
+from lcpstep.stepping.theta_method.row_impulses import (
+    apply,
+    apply_once,
+    impulses,
+    note_sticking,
+    take_part,
+)
 
 
 def take_step(

@@ -17,23 +17,21 @@ from __future__ import annotations
 
 import cython
 
-if not cython.compiled:
-    from lcpstep.kernels.dynamics import gap_rates, gaps
-    from lcpstep.kernels.linear import factorise
-    from lcpstep.kernels.model import Model
-    from lcpstep.kernels.vectors import add, clear, copy, largest, product
-    from lcpstep.pointers import after
-    from lcpstep.stepping.constraints.directions import forget_rounding, mobilities
-    from lcpstep.stepping.constraints.joint_rows import (
-        NEARLY,
-        Elimination,
-        factorise_joints,
-        leave,
-        solve_joints,
-    )
-    from lcpstep.stepping.theta_method.implicit import compliance
-    from lcpstep.stepping.theta_method.moving import Plan, Rows, State
-
+from lcpstep.kernels.dynamics import gap_rates, gaps
+from lcpstep.kernels.linear import factorise
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import add, clear, copy, largest, product
+from lcpstep.pointers import after
+from lcpstep.stepping.constraints.directions import forget_rounding, mobilities
+from lcpstep.stepping.constraints.joint_rows import (
+    NEARLY,
+    Elimination,
+    factorise_joints,
+    leave,
+    solve_joints,
+)
+from lcpstep.stepping.theta_method.implicit import compliance
+from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 
 LANDINGS = 20  # of Newton
 LANDED = 1e-13  # of a way: the last one of these
