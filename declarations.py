@@ -16,7 +16,7 @@ import re
 from pathlib import Path
 
 from inference import constants, variables
-from kernel_sources import IN_C, MERGED, POINTERS, SCALARS, Kernel, Type, kernels, marks
+from kernel_sources import IN_C, MERGED, POINTERS, SCALARS, Kernel, Type, kernel, kernels, marks
 
 DECLARED = {
     f"cython.{mark}" for mark in ("ccall", "cfunc", "nogil", "final")
@@ -86,7 +86,7 @@ def with_methods(k: Kernel) -> list[str]:
 @functools.cache
 def names_in_c(root: Path, module: str) -> set[str]:
     """What C knows of a kernel by itself: functions, classes and constants."""
-    k = Kernel(root, module)
+    k = kernel(root, module)
     if module in IN_C:
         return set(re.findall(r"\w+", k.header))
     by_themselves = re.findall(r"^cdef (?!class)(.*)$", k.header, re.MULTILINE)
@@ -103,6 +103,17 @@ def cimported(k: Kernel) -> dict[str, str]:
     return own | {name: LIBRARY[home] for name, home in k.homes.items() if home in LIBRARY}
 
 
+@functools.cache
+def needed(root: Path, name: str) -> frozenset[str]:
+    """The kernels whose declarations Cython reads for one."""
+    found, new = {name}, [name]
+    while new:
+        more = set(cimported(kernel(root, new.pop())).values()) - found - set(LIBRARY.values())
+        found |= more
+        new += more
+    return frozenset(found)
+
+
 def own_numbers(k: Kernel) -> dict[str, Type]:
     """The types of the constants that a kernel makes, but for those that its `.pxd` file has."""
     told = set(re.findall(r"\w+", k.header))
@@ -114,7 +125,7 @@ def own_numbers(k: Kernel) -> dict[str, Type]:
 
 def declarations(root: Path, name: str) -> str:
     """What Cython reads as the `.pxd` file of a kernel."""
-    k = Kernel(root, name)
+    k = kernel(root, name)
     if name in IN_C:
         return k.header
     own = [line for f in k.functions.values() for line in declared(k, f)]
@@ -123,7 +134,10 @@ def declarations(root: Path, name: str) -> str:
     told = set(re.findall(r"\w+", " ".join(re.findall(r"cimport(.*)", k.header))))
     homes = {name: home for name, home in cimported(k).items() if name in words - told}
     homes |= dict.fromkeys(words.intersection(POINTERS), "lcpstep.pointers")
-    cimports = [f"from {home} cimport {name}" for name, home in sorted(homes.items())]
+    cimports = [
+        f"from {home} cimport {', '.join(sorted(n for n in homes if homes[n] == home))}"
+        for home in sorted(set(homes.values()))
+    ]
     return "\n".join(["cimport cython", *cimports, *lines, ""])
 
 
@@ -136,7 +150,7 @@ def numbers(k: Kernel) -> list[str]:
 
 def source(root: Path, name: str) -> str:
     """A kernel as Cython reads it: what C knows is cimported, nothing declared again; lines stay where they are."""
-    k = Kernel(root, name)
+    k = kernel(root, name)
     lines, in_c = k.text.split("\n"), cimported(k)
     for node in ast.walk(k.tree):
         if isinstance(node, ast.ClassDef | ast.FunctionDef) and "cython.ufunc" not in marks(node):
@@ -145,11 +159,16 @@ def source(root: Path, name: str) -> str:
                     lines[mark.lineno - 1] = ""
     for node in k.tree.body:
         if isinstance(node, ast.ImportFrom):
-            names = [(ast.unparse(name), in_c.get(name.asname or name.name)) for name in node.names]
-            taken = [f"from cython.cimports.{home} import {name}" for name, home in names if home]
-            left = [name for name, home in names if not home]
-            lines[node.lineno - 1 : node.end_lineno] = [""] * (node.end_lineno - node.lineno + 1)
-            lines[node.lineno - 1] = "; ".join(
-                [*taken, *[f"from {node.module} import {', '.join(left)}"] * bool(left)]
-            )
+            begin, end = node.lineno - 1, node.end_lineno or node.lineno
+            lines[begin:end] = [imported(node, in_c), *[""] * (end - begin - 1)]
     return "\n".join(lines)
+
+
+def imported(node: ast.ImportFrom, in_c: dict[str, str]) -> str:
+    """A line that imports the same, what C knows from C."""
+    known = [ast.unparse(name) for name in node.names if (name.asname or name.name) in in_c]
+    others = [ast.unparse(name) for name in node.names if (name.asname or name.name) not in in_c]
+    home = LIBRARY.get(str(node.module), node.module)
+    c = [f"from cython.cimports.{home} import {', '.join(known)}"] if known else []
+    python = [f"from {node.module} import {', '.join(others)}"] if others else []
+    return "; ".join([*c, *python])

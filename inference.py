@@ -12,7 +12,7 @@ import functools
 from collections.abc import Iterator
 from pathlib import Path
 
-from kernel_sources import SCALARS, Kernel, Type, bases, qualified
+from kernel_sources import SCALARS, Kernel, Type, bases, kernel, qualified
 
 ENTRIES = {"Doubles": "double", "Indices": "Py_ssize_t", "Flags": "Py_ssize_t"}
 OF_POINTERS = {"abs": "double", "max": "double", "min": "double", "inf": "double", "nan": "double"}
@@ -80,7 +80,7 @@ def constant_type(k: Kernel, name: str) -> Type:
 @functools.cache
 def constants(root: Path, module: str) -> dict[str, Type]:
     """The types of a module's constants, numbers alone."""
-    k = Kernel(root, module)
+    k = kernel(root, module)
     found: dict[str, Type] = {}
     for node in k.tree.body:
         if isinstance(node, ast.Assign):
@@ -164,12 +164,19 @@ def variables(k: Kernel, f: ast.FunctionDef, owner: str | None) -> dict[str, str
         if name not in fixed:
             assigned.setdefault(name, []).append(value)
     known = dict(fixed)
-    for last in [False] * 2 * len(assigned) + [True] * len(assigned):
-        for name, values in assigned.items():  # first by what is known of each, for one may need the other
-            kinds = [infer(k, known, value) if value else None for value in values]
-            if not last:
-                known[name] = joined([kind for kind in kinds if kind])
-            elif joined(kinds) != known[name]:  # and then only those all of whose values are
-                known[name] = None
+    for told, most in ((True, 2 * len(assigned)), (False, len(assigned))):
+        for _ in range(most):
+            before = dict(known)
+            for (
+                name,
+                values,
+            ) in assigned.items():  # first by what is known of each, for one may need the other,
+                kinds = [infer(k, known, value) if value else None for value in values]
+                if told:
+                    known[name] = joined([kind for kind in kinds if kind])
+                elif joined(kinds) != known[name]:  # and then only those all of whose values are
+                    known[name] = None
+            if known == before:
+                break
     wanted = (*SCALARS, "object")
     return {name: str(kind) for name, kind in known.items() if kind in wanted and name not in parameters}

@@ -67,14 +67,14 @@ class Kernel:
     def home_of(self, name: str) -> Kernel | None:
         """The kernel that a name is from; None: of no kernel."""
         module = self.name if name in self.classes or name in self.functions else self.homes.get(name, "")
-        return self if module == self.name else kernel(self.root, module)
+        path = self.root / f"{module.replace('.', '/')}.py"
+        return kernel(self.root, module) if module.startswith("lcpstep.") and path.exists() else None
 
 
 @functools.cache
-def kernel(root: Path, name: str) -> Kernel | None:
-    """The kernel of that name, if it is one."""
-    path = root / f"{name.replace('.', '/')}.py"
-    return Kernel(root, name) if name.startswith("lcpstep.") and path.exists() else None
+def kernel(root: Path, name: str) -> Kernel:
+    """The kernel of that name."""
+    return Kernel(root, name)
 
 
 @functools.cache
@@ -122,7 +122,6 @@ def bases(k: Kernel, kind: Type) -> Iterator[tuple[Kernel, str]]:
     while kind and ":" in kind:
         module, name = kind.split(":")
         home = kernel(k.root, module)
-        assert home is not None
         yield home, name
         parents = home.classes[name].bases
         kind = qualified(home, ast.unparse(parents[0])) if parents else None

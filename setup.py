@@ -19,7 +19,6 @@ from pathlib import Path
 import Cython
 import numpy as np
 from Cython.Build import cythonize
-from Cython.Build.Dependencies import create_dependency_tree
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
@@ -121,10 +120,10 @@ def is_built(ext: Module) -> bool:
 
 def digest(ext: Module) -> str:
     """A checksum: of Cython's version, of the options, of a module's source and of what that includes."""
-    found = [*create_dependency_tree().all_dependencies(in_c(ext.sources[0])), *ext.depends]
-    places = HERE / "lcpstep", HERE / "build"
-    mine = sorted({HERE / file for file in found if any(map((HERE / file).is_relative_to, places))})
-    texts = [file.relative_to(HERE).as_posix().encode() + file.read_bytes() for file in mine]
+    source = in_c(ext.sources[0])
+    needed = [] if source.endswith(".pyx") else declarations.needed(HERE, ext.name)
+    headers = [f"{SOURCES}/{name.replace('.', '/')}.pxd" for name in sorted(needed)]
+    texts = [file.encode() + (HERE / file).read_bytes() for file in (source, *headers, *ext.depends)]
     whole = [repr((Cython.__version__, DIRECTIVES, OPTIONS, MACROS)).encode(), *texts]
     return hashlib.sha256(b"\0".join(whole)).hexdigest()
 
@@ -172,11 +171,11 @@ def extension(name: str) -> Module:
     cloned = clones.exists() and platform.libc_ver()[0] == "glibc"
     return Module(
         name,
-        [str(source.with_suffix(".py"))],
+        [source.with_suffix(".py").as_posix()],
         include_dirs=[np.get_include()],
         define_macros=MACROS,
         extra_compile_args=[*OPTIONS, *ROWS, "-include", str(clones)] if cloned else OPTIONS,
-        depends=[str(clones)] if cloned else [],
+        depends=[str(clones.relative_to(HERE))] if cloned else [],
     )
 
 

@@ -82,7 +82,7 @@ def f(x: float) -> float:
     numpys = "@cython.ufunc\n@cython.cfunc\ndef g(x: cython.double) -> cython.double:\n    return x"
     declared(tmp_path, source + numpys)
     read = declarations.source(tmp_path, "lcpstep.kernel").split("\n")
-    pointers = [f"from cython.cimports.lcpstep.pointers import {x}" for x in ("Doubles", "abs")]
+    pointers = ["from cython.cimports.lcpstep.pointers import Doubles, abs"]
     assert read == [
         *("import cython", "", "from cython.cimports.libc.math import pow as power", ""),
         *("; ".join(pointers), "", "", ""),
@@ -207,7 +207,7 @@ def total(x: Doubles, n: int) -> float:
     lines = declared(tmp_path, source, "short")
     assert lines[:3] == [
         "cimport cython",
-        *[f"from lcpstep.pointers cimport {x}" for x in ("Doubles", "abs")],
+        "from lcpstep.pointers cimport Doubles, abs",
     ]
     assert lines[lines.index("cdef inline double total(Doubles x, Py_ssize_t n) noexcept nogil:") + 1 :] == [
         *("    cdef double s", "    cdef Py_ssize_t i", "    s = 0.0", "    for i in range(n):"),
