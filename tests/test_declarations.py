@@ -205,10 +205,7 @@ def total(x: Doubles, n: int) -> float:
 """
     )
     lines = declared(tmp_path, source, "short")
-    assert lines[:3] == [
-        "cimport cython",
-        "from lcpstep.pointers cimport Doubles, abs",
-    ]
+    assert lines[1] == "from lcpstep.pointers cimport Doubles, abs"
     assert lines[lines.index("cdef inline double total(Doubles x, Py_ssize_t n) noexcept nogil:") + 1 :] == [
         *("    cdef double s", "    cdef Py_ssize_t i", "    s = 0.0", "    for i in range(n):"),
         *("        s += abs(x[i])", "    return s", ""),

@@ -20,10 +20,10 @@ from lcpstep.events.rows.chatter import (
     find_over,
     just_opened,
     meets,
+    moves,
     passes_on,
     take_along,
     tell_over,
-    where_interrupted,
 )
 from lcpstep.events.rows.contacts import (
     gap_of,
@@ -120,7 +120,7 @@ def stays_so(s: Rubbing, t: float) -> bool:
     for c in range(s.n_c):
         T, alpha = s.rows.left[c], s.rows.curve[c]
         if T > 0.0 and stops_others(s, c, T):
-            s.rows.left[c] = where_interrupted(s.rows, c)
+            s.rows.left[c] = -1.0
         elif T > 0.0:
             speed = max(s.terms[c] / NOISE, -alpha * s.scan_length)
             change = abs(later(s, c, t, T) - alpha)
@@ -156,7 +156,8 @@ def close(s: Rubbing, c: int) -> None:
         s.mode[c] = STICKS
     if not hold_modes(s.rows):  # sliding on would take the others' forces away: in a wedge all come to rest
         for d in range(s.n_c):
-            s.mode[d] = STICKS if s.mode[d] != OPEN and rubs(s.rows, d) else s.mode[d]
+            s.rows.tried[d] = 0
+        bring_to_rest(s, c)
         hold_modes(s.rows)
     copy(s.seen, s.v, s.n_q)
     take_velocities(s.rows)
@@ -165,6 +166,14 @@ def close(s: Rubbing, c: int) -> None:
     put_on_account(s.rows)
     measure_velocities(s.rows, s.v)
     find_free(s)
+
+
+def bring_to_rest(s: Rubbing, c: int) -> None:
+    """Contact c sticks, if it rubs, and so do those not `tried` yet that closed ones, or joints, connect with it."""
+    s.rows.tried[c], s.mode[c] = 1, STICKS if rubs(s.rows, c) else s.mode[c]
+    for d in range(s.n_c):
+        if s.mode[d] != OPEN and s.rows.tried[d] == 0 and moves(s.rows, c, d):
+            bring_to_rest(s, d)
 
 
 def slides_on(s: Rubbing, i: int, slip: float) -> bool:

@@ -66,15 +66,7 @@ def time_left(s: Contacts, c: int) -> float:
     if abs(alpha) * s.since[c] <= noise:  # an inelastic collapse
         return 0.0 if slow and u * s.since[c] <= tolerance and not awaits(s, c) else -1.0
     T = accumulation(u, alpha, r) if low else -1.0
-    if not low or s.t0 + T > min(s.high, s.t_end):
-        return -1.0
-    return where_interrupted(s, c) if interrupted(s, c, T) else T
-
-
-def where_interrupted(s: Contacts, c: int) -> float:
-    """The same where something happens meanwhile: of hops lower than the rounding of gaps none is left to be told."""
-    u = s.velocity[s.n_j + c]
-    return 0.0 if u * u <= -2.0 * s.curve[c] * s.rounding_of_gap(c) else -1.0
+    return -1.0 if not low or s.t0 + T > min(s.high, s.t_end) or interrupted(s, c, T) else T
 
 
 def interrupted(s: Contacts, c: int, T: float) -> bool:
@@ -93,6 +85,13 @@ def meets(s: Contacts, c: int, k: int) -> bool:
     i = s.n_j + c
     rubbed = rubs(s, c) and s.D[(i + s.n_c) * s.n_r + k] != 0.0
     return rubbed or s.D[i * s.n_r + k] != 0.0
+
+
+def moves(s: Contacts, c: int, d: int) -> bool:
+    """Whether a force of contact c, on the joints, accelerates contact d, along either of them or not."""
+    i, k, n = s.n_j + c, s.n_j + d, s.n_c if s.n_t > 0 else 0
+    normal = s.D_on[i * s.n_r + k] != 0.0 or s.D_on[i * s.n_r + k + n] != 0.0
+    return normal or s.D_on[(i + n) * s.n_r + k] != 0.0 or s.D_on[(i + n) * s.n_r + k + n] != 0.0
 
 
 def passes_on(s: Contacts, c: int) -> bool:

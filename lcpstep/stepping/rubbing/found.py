@@ -16,12 +16,14 @@ import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.guards import first_fall, read
+from lcpstep.events.contacts.hops import FAINT
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
 from lcpstep.events.rows.contacts import rubs
 from lcpstep.events.rows.equations import measure_biases, renew_rates, size_of
 from lcpstep.kernels.clock import NOISE, RESOLUTION
-from lcpstep.kernels.vectors import copy, product
+from lcpstep.kernels.quadratic import first_zero
+from lcpstep.kernels.vectors import copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, max, min
 from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
@@ -55,22 +57,17 @@ def widen_bands(s: Strides) -> None:
     """
     for c in range(s.n_c):
         g, i = GUARDS * c, s.n_j + c
-        if s.mode[c] == OPEN:
-            s.band[g] = max(
-                s.band[g],
-                s.h
-                * NOISE
-                * (size_of(s.rows, i, s.rate[i], s.v) + s.h * size_of(s.rows, i, s.bias[i], s.a_free)),
-            )
-            s.band[g] = max(s.band[g], NOISE * s.atol)
-        elif s.mode[c] == SLIDES and rubs(s.rows, c):
+        if s.mode[c] == SLIDES and rubs(s.rows, c):
             g, i = g + 1, i + s.n_c
-            s.band[g] = NOISE * (
-                size_of(s.rows, i, s.rate[i], s.v) + s.h * size_of(s.rows, i, s.bias[i], s.a_free) + s.atol
-            )
-        else:
+        elif s.mode[c] != OPEN:
             continue
-        s.armed[g] = 1 if s.begin_value[g] > s.band[g] else 0
+        size = size_of(s.rows, i, s.rate[i], s.v) + s.h * size_of(s.rows, i, s.bias[i], s.a_free)
+        if s.mode[c] == OPEN:
+            s.height[c] = s.height[c] if s.carried[c] == 1 else 0.0
+            s.band[g] = max(s.band[g], NOISE * max(s.h * size, s.atol))
+        else:
+            s.band[g] = NOISE * (size + s.atol)
+        s.armed[g] = 1 if s.begin_value[g] > s.band[g] and s.carried[c] == 0 else 0
 
 
 def note(s: Strides, t: float, y: Doubles, v: Doubles, dy: Doubles, value: Doubles, slope: Doubles) -> bool:
@@ -148,13 +145,11 @@ def first_event(s: Strides, h: float) -> int:
     """The first guard that acts within the step of size h, or -1; when, into `found`, as a fraction of h."""
     s.guard, s.found = -1, 2.0
     for g in range(GUARDS * s.n_c):
-        least = curve(s, g, h)
-        if least > (0.0 if s.armed[g] == 1 else -s.band[g]):
+        least, low = curve(s, g, h), low_flight(s, g)
+        if low > h or (low == 0.0 and least > (0.0 if s.armed[g] == 1 else -s.band[g])):
             continue
         elevate(s, bend(s, g, h))
-        place, low = first_fall(s, g), low_hop(s, g, h)
-        if place != NONE and low > 0.0:  # by where it has fallen out of its band others may have acted
-            place = min(place, low / h)
+        place = low / h if low > 0.0 else first_fall(s, g)
         if place != NONE and place < s.found:
             s.guard, s.found = g, place
             _, slope, _ = taylor(s.scan.c, place, s.scan.half)
@@ -184,9 +179,9 @@ def hides(s: Strides, t: float, h: float) -> bool:
 
 
 def arm(s: Strides) -> None:
-    """Note the guards that have come out of their band at the end of the step."""
+    """Note the guards that have come out of their band at the end of the step; of low hops gaps do not tell."""
     for g in range(GUARDS * s.n_c):
-        if s.end_value[g] > s.band[g]:
+        if s.end_value[g] > s.band[g] and s.carried[g // GUARDS] == 0:
             s.armed[g] = 1
 
 
@@ -239,24 +234,38 @@ def elevate(s: Strides, least: int) -> None:
             b[j] = share * b[j - 1] + (1.0 - share) * b[j]
 
 
-def low_hop(s: Strides, g: int, h: float) -> float:
-    """When the gap of guard g, which begins within its band, comes down again if it does not rise out of it; else 0.
-
-    Steps would come back to its beginning.
-    """
-    c = g // GUARDS
-    if g % GUARDS > 0 or s.mode[c] != OPEN or s.armed[g] == 1:
+def low_flight(s: Strides, g: int) -> float:
+    """How long a low hop takes whose gap is guard g, from where it begins or goes on; 0 if it is none."""
+    c, half = g // GUARDS, 0.5 * s.begin_bend[g // GUARDS]
+    if g % GUARDS > 0 or not hops(s, c) or half >= 0.0:
         return 0.0
-    return min(low_flight(s.begin_slope[g], s.begin_bend[c], s.band[g]), h)
+    tau = first_zero(s.height[c], s.begin_slope[g], half)
+    return tau if is_low(s, c, tau) else 0.0
 
 
-def low_flight(u: float, alpha: float, band: float) -> float:
-    """How long a hop takes, from its speed and acceleration, that does not rise out of the band of its gap; else 0.
+def hops(s: Strides, c: int) -> bool:
+    """Whether a hop of contact c begins at the base, or a low one goes on there."""
+    g = GUARDS * c
+    return s.mode[c] == OPEN and s.armed[g] == 0 and (s.begin_slope[g] > s.terms[c] or s.carried[c] == 1)
 
-    Of so low a hop gaps tell but rounding: seen below its band, a body would land too fast, each time.
-    """
-    half = 0.5 * alpha
-    return 0.0 if u <= 0.0 or half >= 0.0 or u * u > -4.0 * half * band else -u / half
+
+def is_low(s: Strides, c: int, tau: float) -> bool:
+    """Whether a hop of contact c is so low up to tau that its acceleration at first tells more of it than its gap."""
+    g = GUARDS * c  # which others move by more than rounding where they are put onto their surfaces
+    highest = s.height[c] + tau * (abs(s.begin_slope[g]) + 0.5 * tau * abs(s.begin_bend[c]))
+    change = abs(s.end_bend[c] - s.begin_bend[c]) * tau / s.length
+    most = max(FAINT * largest(s.y, 0.0, s.n_q), s.band[g])
+    return highest <= most and change * tau * tau <= 6.0 * s.band[g]
+
+
+def interrupt(s: Strides, t: float, tau: float) -> None:
+    """The motion goes on from t, after tau: low hops are followed up to there, but not beyond corners of surfaces."""
+    for c in range(s.n_c):
+        g, half = GUARDS * c, 0.5 * s.begin_bend[c]
+        rises = hops(s, c) and half >= 0.0 and is_low(s, c, tau)
+        goes_on = g != s.guard and t < s.clock.high and (rises or low_flight(s, g) > tau)
+        s.height[c] = s.height[c] + tau * (s.begin_slope[g] + tau * half) if goes_on else 0.0
+        s.carried[c] = 1 if s.height[c] > 0.0 else 0
 
 
 def locate(s: Strides, g: int, h: float) -> float:
@@ -268,7 +277,7 @@ def locate(s: Strides, g: int, h: float) -> float:
     t0, tau, slope, crossed = s.clock.t0, s.found * h, s.slope, s.end_value[g] < 0.0
     if tau <= 0.0:
         return 0.0
-    low = low_hop(s, g, h)
+    low = low_flight(s, g)
     if low > 0.0:
         return low if s.step(t0, low) and read_guards(s, t0 + low, s.y_new) else NOWHERE
     s.scan.bracket.begin(0.0, h, True, tau)

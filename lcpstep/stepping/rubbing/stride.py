@@ -29,6 +29,7 @@ from lcpstep.stepping.rubbing.found import (
     arm,
     first_event,
     hides,
+    interrupt,
     locate,
     note_arrival,
     note_base,
@@ -65,8 +66,8 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
         goal = border if s.tolerance > 0.0 else goal
     g, tau = s.guard, s.tau
     if g < 0:
-        arm(s)
         take_over(s, record, border, h)
+        arm(s)
         arrive_with(s, border)
         if border >= goal:
             end_step(s, record, tally)
@@ -170,6 +171,7 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
 
 def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
     """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
+    interrupt(s, t, tau)
     if tau > 0.0:
         if s.rows.n_held > 0:
             put_end_back(s)
