@@ -15,6 +15,8 @@ from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import clear, copy
 from lcpstep.pointers import abs, after, max
 
+SLID = 1.0 - 2.0**-20  # of all that friction can do in a turn
+
 
 def look_back(s: Contacts) -> None:
     """Compare with the velocities of now from now on."""
@@ -37,7 +39,7 @@ def recurs(s: Contacts) -> float:
     for c in range(s.n_c if ratio > 0.0 else 0):
         i = n_j + c
         if s.turn_impulse[c] > 0.0:
-            if rubs(s, c) and not rubs_on(s, i + s.n_c, ratio):
+            if rubs(s, c) and not rubs_on(s, c, ratio):
                 return 0.0
         elif is_met(s, c) and left(s.turn_velocity[i], s.velocity[i], ratio) < -s.terms[c]:
             return 0.0
@@ -54,10 +56,15 @@ def slows(s: Contacts) -> bool:
     return some
 
 
-def rubs_on(s: Contacts, i: int, ratio: float) -> bool:
-    """Whether friction on the tangent of row i goes on as in the turn: sliding one way, or to rest in proportion."""
-    before, u = s.turn_velocity[i], s.velocity[i]
-    return rests(s, i, ratio) or (u * left(before, u, ratio) > 0.0 and u * before > 0.0)
+def rubs_on(s: Contacts, c: int, ratio: float) -> bool:
+    """Whether friction of contact c goes on as in the turn: sliding one way all along, or to rest in proportion.
+
+    Friction that has not all its force at each impact turns sliding about, and what it does is not in proportion yet.
+    """
+    i = s.n_j + s.n_c + c
+    before, u, slides = s.turn_velocity[i], s.velocity[i], SLID * s.mu[c] * s.turn_impulse[c]
+    one_way = u * left(before, u, ratio) > 0.0 and u * before > 0.0
+    return rests(s, i, ratio) or (one_way and abs(s.turn_impulse[s.n_c + c]) >= slides)
 
 
 def rests(s: Contacts, i: int, ratio: float) -> bool:
