@@ -69,36 +69,3 @@ def test_a_wedge_that_comes_to_rest_stops_no_body_beside_it(share):
     pull = (force @ tangent + rubbing) / scene.system.M[0, 0]
     way = speed * (t1 - t0) + 0.5 * pull * (t1 - t0) ** 2
     assert (run.q[1, :2] - run.q[0, :2]) @ tangent == pytest.approx(way, abs=1e-9)
-
-
-def struck(v, M, G, T, mu, r):
-    """The velocity after the impact of one contact by Moreau's law: xi = u+ + r u-, p_T = -mu p_N sign(xi_T)."""
-    B = np.array([G, T])
-    W, xi = B @ np.linalg.solve(M, B.T), (1.0 + r) * B @ v
-    p = np.linalg.solve(W, -xi)
-    for way in (1.0, -1.0) if abs(p[1]) > mu * p[0] else ():
-        tried = -xi[0] / (W[0, 0] - mu * way * W[0, 1]) * np.array([1.0, -mu * way])
-        if way * (xi + W @ tried)[1] >= 0.0:
-            p = tried
-    return v + np.linalg.solve(M, B.T @ p)
-
-
-@pytest.mark.parametrize("tolerance", [1e-9, 1e-11, 1e-12])
-def test_impacts_in_turn_are_summed_when_friction_goes_on_as_it_does(tolerance):
-    """Friction that still turned sliding about left 0.3 to 1.1 m/s, by the tolerance, of what the impacts stop."""
-    scene = draw(31533)
-    contacts, rubbing = scene.contacts, scene.contacts.friction
-    run = simulate(scene, EventDriven(tolerance, tolerance), keep=[1.03782, 1.0378288041])
-    v = run.v[0]
-    for k in range(2400):
-        c = (2, 5)[k % 2]
-        v = struck(
-            v, scene.system.M, contacts.G[c], rubbing.tangent[c], rubbing.mu[c], contacts.restitution[c]
-        )
-    slips = rubbing.tangent[[2, 5]] @ np.array([v, run.v[1]]).T
-    assert slips[:, 1] == pytest.approx(slips[:, 0], abs=2e-4)  # gravity acts for 9e-6 s meanwhile
-
-
-@pytest.mark.parametrize("seed", [28767, 31533])
-def test_impacts_in_turn_end_alike_by_all_methods(seed):
-    assert not complaints(seed)

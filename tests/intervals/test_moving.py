@@ -69,7 +69,9 @@ def test_a_plain_interval_has_no_known_rate_and_a_number_none():
     assert np.all(np.isinf(x.lo))
     assert np.all(np.isinf(x.hi))
     assert rate_of(3.0) == 0.0
-    with np.errstate(invalid="ignore"):  # whether infinities raise a flag on their way is the compiler's choice
+    with np.errstate(
+        invalid="ignore"
+    ):  # whether infinities raise a flag on their way is the compiler's choice
         product = Moving(np.ones(1), 2.0 * np.ones(1), 1.0) * Interval(np.ones(1), np.ones(1))
     assert np.isinf(product.rate.hi[0])
 

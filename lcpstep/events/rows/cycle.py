@@ -15,7 +15,7 @@ from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import clear, copy
 from lcpstep.pointers import abs, after, max
 
-SLID = 1.0 - 2.0**-20  # of all that friction can do in a turn
+SLIDES_ON = 2.0**-20  # of what friction can do in a turn: so near to it does it slide all along
 
 
 def look_back(s: Contacts) -> None:
@@ -59,12 +59,14 @@ def slows(s: Contacts) -> bool:
 def rubs_on(s: Contacts, c: int, ratio: float) -> bool:
     """Whether friction of contact c goes on as in the turn: sliding one way all along, or to rest in proportion.
 
-    Friction that has not all its force at each impact turns sliding about, and what it does is not in proportion yet.
+    Friction that has not all its force at each impact turns sliding about, and what it does is not in proportion yet;
+    nor is it while its coefficient still changes with the sliding velocity.
     """
     i = s.n_j + s.n_c + c
-    before, u, slides = s.turn_velocity[i], s.velocity[i], SLID * s.mu[c] * s.turn_impulse[c]
+    before, u, most = s.turn_velocity[i], s.velocity[i], s.mu[c] * s.turn_impulse[c]
     one_way = u * left(before, u, ratio) > 0.0 and u * before > 0.0
-    return rests(s, i, ratio) or (one_way and abs(s.turn_impulse[s.n_c + c]) >= slides)
+    slides = one_way and abs(abs(s.turn_impulse[s.n_c + c]) - most) <= SLIDES_ON * most
+    return slides or rests(s, i, ratio)
 
 
 def rests(s: Contacts, i: int, ratio: float) -> bool:
