@@ -38,9 +38,7 @@ def signature(k: Kernel, f: ast.FunctionDef) -> str | None:
     if "cython.ccall" in marked or "cython.cfunc" in marked:
         given, result = given.replace("None ", "object "), result or "object"
         free = " noexcept nogil" if "cython.nogil" in marked else ""
-        if "cython.ccall" in marked:
-            return f"cpdef {result} {f.name}({given}){free}"
-        return f"cdef {result} {f.name}({given})" + " noexcept" * (result in (*SCALARS, "void"))
+        return f"{'cpdef' if 'cython.ccall' in marked else 'cdef'} {result} {f.name}({given}){free}"
     if f.name.startswith("__") or marked or not {None, "object"}.isdisjoint((result, *kinds)):
         return None
     return f"cdef {result} {f.name}({given}) noexcept nogil"
@@ -49,11 +47,12 @@ def signature(k: Kernel, f: ast.FunctionDef) -> str | None:
 def declared(k: Kernel, f: ast.FunctionDef, owner: str | None = None) -> list[str]:
     """Lines that declare a function, or a method of the class `owner`; none where it is Python's."""
     line = signature(k, f)
-    if line is None or re.search(rf"\b{f.name}\b[ \w\"]*\(", k.header):
+    if line is None or re.search(rf"^ *cp?def [^(#]*\b{f.name}\b[ \w\"]*\(", k.header, re.MULTILINE):
         return []
     local = variables(k, f, owner)
     if k.name in MERGED:
-        body = k.text.splitlines()[f.body[1].lineno - 1 : f.end_lineno]  # without what it says of itself
+        begin = f.body[ast.get_docstring(f) is not None].lineno - 1
+        body = k.text.splitlines()[begin : f.end_lineno]
         first = [f"    cdef {kind} {name}" for name, kind in local.items()]
         return [line.replace("cdef", "cdef inline") + ":", *first, *body, ""]
     known = ", ".join(f"{name}={kind}" for name, kind in local.items())
@@ -89,9 +88,13 @@ def names_in_c(root: Path, module: str) -> set[str]:
     k = kernel(root, module)
     if module in IN_C:
         return set(re.findall(r"\w+", k.header))
-    by_themselves = re.findall(r"^cdef (?!class)(.*)$", k.header, re.MULTILINE)
     functions = {name for name, f in k.functions.items() if signature(k, f)}
-    return functions | set(k.fields) | set(own_numbers(k)) | set(re.findall(r"\w+", " ".join(by_themselves)))
+    return functions | set(k.fields) | set(own_numbers(k)) | by_themselves(k)
+
+
+def by_themselves(k: Kernel) -> set[str]:
+    """Words of what the `.pxd` file of a kernel declares besides classes."""
+    return set(re.findall(r"\w+", " ".join(re.findall(r"^cdef (?!class)([^#\n]*)", k.header, re.MULTILINE))))
 
 
 def cimported(k: Kernel) -> dict[str, str]:
@@ -116,8 +119,7 @@ def needed(root: Path, name: str) -> frozenset[str]:
 
 def own_numbers(k: Kernel) -> dict[str, Type]:
     """The types of the constants that a kernel makes, but for those that its `.pxd` file has."""
-    told = set(re.findall(r"\w+", k.header))
-    known = constants(k.root, k.name).items()
+    told, known = by_themselves(k), constants(k.root, k.name).items()
     return {
         n: kind for n, kind in known if kind in SCALARS and n.isupper() and n not in told and n not in k.homes
     }

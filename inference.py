@@ -35,8 +35,11 @@ def infer(k: Kernel, known: dict[str, Type], x: ast.expr) -> Type:
             return {bool: "bint", int: "Py_ssize_t", float: "double"}.get(type(value))
         case ast.Name(name):
             return known.get(name) or constant_type(k, name)
-        case ast.Compare() | ast.UnaryOp(op=ast.Not()):
+        case ast.UnaryOp(op=ast.Not()):
             return "bint"
+        case ast.Compare(left=a, ops=ops, comparators=others):
+            of_objects = all(isinstance(op, ast.Is | ast.IsNot | ast.In | ast.NotIn) for op in ops)
+            return "bint" if of_objects or joined([of(part) for part in (a, *others)]) in SCALARS else None
         case ast.UnaryOp(operand=inner):
             return joined([of(inner), "Py_ssize_t"])
         case ast.BoolOp(values=parts):
@@ -45,7 +48,8 @@ def infer(k: Kernel, known: dict[str, Type], x: ast.expr) -> Type:
             return joined([of(a), of(b)])
         case ast.BinOp(left=a, op=op, right=b):
             both = joined([of(a), of(b), "Py_ssize_t"])
-            return "double" if both and isinstance(op, ast.Div) else both
+            broken = isinstance(op, ast.Div) or (isinstance(op, ast.Pow) and not isinstance(b, ast.Constant))
+            return None if broken and both == "Py_ssize_t" else both
         case ast.Attribute(attr="shape"):
             return "Indices"
         case ast.Attribute(value=owner, attr=name):
@@ -65,7 +69,7 @@ def entry_type(owner: str, index: ast.expr) -> Type:
     """The type of one of several numbers."""
     if owner.startswith("("):
         return owner.strip("()").split(", ")[ast.literal_eval(index)]
-    return "double" if owner.startswith("double[") else ENTRIES.get(owner)
+    return ENTRIES.get(owner)
 
 
 def constant_type(k: Kernel, name: str) -> Type:
@@ -150,6 +154,15 @@ def bindings(f: ast.FunctionDef) -> Iterator[tuple[str, ast.expr | None]]:
                 yield from ((x.id, None) for x in ast.walk(target) if isinstance(x, ast.Name))
 
 
+Assigned = dict[str, list[ast.expr | None]]
+
+
+def told(k: Kernel, known: dict[str, Type], assigned: Assigned) -> Iterator[tuple[str, list[Type]]]:
+    """The types of all that is assigned to each variable."""
+    for name, values in assigned.items():
+        yield name, [infer(k, known, value) if value else None for value in values]
+
+
 def variables(k: Kernel, f: ast.FunctionDef, owner: str | None) -> dict[str, str]:
     """The types of a function's local variables, as far as all that is assigned to them is known."""
     fixed = {a.arg: qualified(k, k.type_of(a.annotation)) for a in f.args.args}
@@ -159,24 +172,19 @@ def variables(k: Kernel, f: ast.FunctionDef, owner: str | None) -> dict[str, str
     for node in ast.walk(f):
         if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
             fixed[node.target.id] = qualified(k, k.type_of(node.annotation))
-    assigned: dict[str, list[ast.expr | None]] = {}
+    assigned: Assigned = {}
     for name, value in bindings(f):
         if name not in fixed:
             assigned.setdefault(name, []).append(value)
     known = dict(fixed)
-    for told, most in ((True, 2 * len(assigned)), (False, len(assigned))):
-        for _ in range(most):
-            before = dict(known)
-            for (
-                name,
-                values,
-            ) in assigned.items():  # first by what is known of each, for one may need the other,
-                kinds = [infer(k, known, value) if value else None for value in values]
-                if told:
-                    known[name] = joined([kind for kind in kinds if kind])
-                elif joined(kinds) != known[name]:  # and then only those all of whose values are
-                    known[name] = None
-            if known == before:
-                break
+    for _ in range(2 * len(assigned)):  # first from what is known of each, for one may need the other
+        before = dict(known)
+        for name, kinds in told(k, known, assigned):
+            known[name] = joined([kind for kind in kinds if kind])
+        if known == before:
+            break
+    for _ in assigned:  # then without those of which not all is known
+        for name, kinds in told(k, known, assigned):
+            known[name] = known[name] if joined(kinds) == known[name] else None
     wanted = (*SCALARS, "object")
     return {name: str(kind) for name, kind in known.items() if kind in wanted and name not in parameters}

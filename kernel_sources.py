@@ -99,7 +99,7 @@ def fields_of(header: str) -> dict[str, dict[str, str]]:
     """The types of the fields of each class that a `.pxd` file has."""
     found: dict[str, dict[str, str]] = {}
     for line in header.splitlines():
-        if match := re.match(r"cdef class (\w+)", line):
+        if match := re.match(r"cdef class (\w+).*:", line):
             found[match[1]] = {}
         elif found and (match := re.match(r"    cdef (?:public |readonly )?([\w.]+) (.+)$", line)):
             next(reversed(found.values())).update(dict.fromkeys(re.split(r",\s*", match[2]), match[1]))

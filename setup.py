@@ -77,6 +77,7 @@ class Build(build_ext):
             os.environ["CC"] = f"{sys.executable} -m ziglang cc"
             os.environ["LDSHARED"] = f"{os.environ['CC']} {' '.join(linking())}"
         write_sources()
+        self.forget_others()
         for ext in self.extensions:
             ext.digest = digest(ext)
         translate([ext for ext in self.extensions if self.force or not is_built(ext)])
@@ -89,6 +90,15 @@ class Build(build_ext):
                 built = HERE / self.get_ext_filename(ext.name)
                 if built.exists():
                     built.touch()  # no older than its source, as tests ask
+
+    def forget_others(self) -> None:
+        """Take away what was built of modules that are none any more."""
+        names = {self.get_ext_filename(ext.name) for ext in self.extensions}
+        for note in list(DIGESTS.rglob(f"*{sysconfig.get_config_var('EXT_SUFFIX')}")):
+            name = note.relative_to(DIGESTS)
+            if str(name) not in names:
+                for file in (note, HERE / name, Path(self.build_lib) / name):
+                    file.unlink(missing_ok=True)
 
     def build_extension(self, ext: Extension) -> None:
         """Compile one module, or copy it where it lies built."""
@@ -124,7 +134,7 @@ def digest(ext: Module) -> str:
     needed = [] if source.endswith(".pyx") else declarations.needed(HERE, ext.name)
     headers = [f"{SOURCES}/{name.replace('.', '/')}.pxd" for name in sorted(needed)]
     texts = [file.encode() + (HERE / file).read_bytes() for file in (source, *headers, *ext.depends)]
-    whole = [repr((Cython.__version__, DIRECTIVES, OPTIONS, MACROS)).encode(), *texts]
+    whole = [repr((Cython.__version__, DIRECTIVES, OPTIONS, ROWS, MACROS)).encode(), *texts]
     return hashlib.sha256(b"\0".join(whole)).hexdigest()
 
 
@@ -141,6 +151,10 @@ def write_sources() -> None:
         put(file.with_suffix(".pxd"), declarations.declarations(HERE, name))
         for package in list(file.parents)[:-1]:
             put(package / "__init__.py", "")
+    known = {name.replace(".", "/") for name in kernel_sources.kernels(HERE)}
+    for old in list((HERE / SOURCES).rglob("*.p*")):
+        if old.stem != "__init__" and old.relative_to(HERE / SOURCES).with_suffix("").as_posix() not in known:
+            old.unlink(missing_ok=True)
 
 
 def put(file: Path, text: str) -> None:

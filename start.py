@@ -107,10 +107,14 @@ def required(checks: bool) -> list[str]:
 
 def kernels() -> list[str]:
     """Files from which machine code is built."""
-    sources = [
-        file for file in ROOT.glob("lcpstep/**/*.py") if "import cython\n" in file.read_text(encoding="utf-8")
-    ]
-    files = [*sources, *ROOT.glob("lcpstep/**/*.pxd"), *ROOT.glob("lcpstep/**/*.h")]
+    import kernel_sources  # which an older Python, that is told so, could not read
+
+    found = [kernel_sources.kernel(ROOT, name) for name in kernel_sources.kernels(ROOT)]
+    asked = {home for k in found for home in k.homes.values()} | {
+        k.name for k in found
+    }  # constants come from others
+    sources = [ROOT / f"{name.replace('.', '/')}.py" for name in asked if name.startswith("lcpstep.")]
+    files = [*filter(Path.exists, sources), *ROOT.glob("lcpstep/**/*.pxd"), *ROOT.glob("lcpstep/**/*.h")]
     return sorted(str(file.relative_to(ROOT)) for file in files)
 
 

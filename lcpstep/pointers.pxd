@@ -11,7 +11,7 @@ cdef extern from *:
     long long bits "lcpstep_bits"(double x) noexcept nogil
     double double_of "lcpstep_double_of"(long long bits) noexcept nogil
 
-# Of a kind's fields several stand in a line so
+# Named, so that several fields fit in one line
 ctypedef double* Doubles
 ctypedef Py_ssize_t* Indices
 ctypedef unsigned char* Flags

@@ -10,7 +10,8 @@ import importlib.machinery
 import pytest
 from hypothesis import settings
 
-from tests.uncompiled import BUILT
+import start
+from tests.uncompiled import BUILT, MERGED
 
 settings.register_profile("random", deadline=None)
 settings.register_profile("repeated", deadline=None, derandomize=True, max_examples=40)
@@ -19,10 +20,12 @@ settings.load_profile("repeated")
 
 def pytest_configure(config):
     """Compare times of sources with those of what was built from them."""
+    read_by_all = [start.ROOT / file for file in start.MADE_BY]
+    read_by_all += [file for name in MERGED for file in (BUILT[name], BUILT[name].with_suffix(".pxd"))]
     for name, source in BUILT.items():
         for suffix in importlib.machinery.EXTENSION_SUFFIXES:
             built = source.with_suffix(suffix)
-            files = source, source.with_suffix(".pxd")
+            files = source, source.with_suffix(".pxd"), *read_by_all
             newest = max(file.stat().st_mtime for file in files if file.exists())
             if built.exists() and built.stat().st_mtime < newest:
                 raise pytest.UsageError(

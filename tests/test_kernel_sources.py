@@ -42,7 +42,7 @@ def test_a_division_of_integers_is_found():
     assert divisions("EARLY = 1 / 16\n\ndef f(n: int, m: int, x: float):\n    return n / m + x / n") == [1, 4]
 
 
-# --- what a kernel takes from others: said once, in the `.py` -----------------------------------------------------
+# --- how modules are linked ----------------------------------------------------------------------------------------
 
 
 def setup_module_of_project():

@@ -1,4 +1,3 @@
-from lcpstep.pointers cimport Callback
 
 cdef class Function:
     cdef object kept

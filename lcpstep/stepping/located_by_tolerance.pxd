@@ -1,3 +1,2 @@
-from lcpstep.stepping.located_parts cimport Parts
 
 cdef class Attempts(Parts):

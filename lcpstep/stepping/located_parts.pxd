@@ -1,7 +1,5 @@
 from lcpstep.kernels.model cimport Model
 from lcpstep.stepping.pieces.state cimport Plan
-from lcpstep.stepping.pieces.state cimport Work
-from lcpstep.stepping.step_control cimport Control
 
 cdef class Led:
     cdef object kept

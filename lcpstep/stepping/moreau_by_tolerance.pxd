@@ -1,8 +1,5 @@
 from lcpstep.kernels.model cimport Model
-from lcpstep.stepping.step_control cimport Control
-from lcpstep.stepping.theta_method.moving cimport Plan
-from lcpstep.stepping.theta_method.moving cimport Rows
-from lcpstep.stepping.theta_method.moving cimport State
+from lcpstep.stepping.theta_method.moving cimport Plan, Rows, State
 
 cdef class Attempts(Control):
     cdef Steps way

@@ -32,7 +32,7 @@ def recurs(s: Contacts) -> float:
     """
     n_j = s.n_j
     for c in range(s.n_c):
-        s.noise(c)
+        s.noise(c)  # into `terms`
     ratio = proportion(s.turn_impulse, after(s.turn_velocity, n_j), after(s.velocity, n_j), s.terms, s.n_c)
     if ratio >= FOR_EVER:
         return 0.0 if slows(s) else ratio
