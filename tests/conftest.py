@@ -6,6 +6,7 @@ others. None has a deadline: what it took would be that of whatever else the mac
 
 import gc
 import importlib.machinery
+from importlib.util import find_spec
 
 import pytest
 from hypothesis import settings
@@ -16,6 +17,16 @@ from tests.uncompiled import BUILT, MERGED
 settings.register_profile("random", deadline=None)
 settings.register_profile("repeated", deadline=None, derandomize=True, max_examples=40)
 settings.load_profile("repeated")
+
+
+OF_NUMBA = (
+    "test_callback_errors",
+    "test_callbacks",
+    "test_compiled_by_users",
+    "test_numba_made",
+    "lagrangian/test_symbolic",
+)
+collect_ignore = [] if find_spec("numba") else [f"{name}.py" for name in OF_NUMBA]
 
 
 def pytest_configure(config):

@@ -11,6 +11,7 @@ from lcpstep.maps import periods
 from lcpstep.model import UncompiledCallback
 from lcpstep.pace import Pace
 from lcpstep.recording import Recorder
+from tests.marks import compiled_only
 from tests.stepping.test_sparse import column
 
 
@@ -174,6 +175,7 @@ def test_an_interrupt_that_a_callback_hears_is_the_last_of_its_run(which, method
             assert after == ["interrupt"]
 
 
+@compiled_only
 def test_an_interrupt_is_heard_once():
     """Not again by maps that follow, in which no run is begun."""
     heard = []

@@ -13,8 +13,9 @@ import pytest
 
 from lcpstep import callbacks
 from lcpstep.pointers import callback_at
+from tests.marks import compiled_only
 
-pytestmark = pytest.mark.skipif(callbacks.disabled(), reason="nothing is compiled")
+pytestmark = compiled_only
 FUNCTIONS = """
 def double(t, q, v, p, out):
     out[:] = 2.0 * q[0]

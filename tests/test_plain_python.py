@@ -8,6 +8,7 @@ import pytest
 from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
 from lcpstep.model import UncompiledCallback
+from tests.marks import compiled_only
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.processes import python
 
@@ -49,6 +50,7 @@ SCENES = [
 ]
 
 
+@compiled_only
 @pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize(
     "method",
@@ -70,11 +72,13 @@ def test_plain_python_gives_the_same_motion_with_a_notice(scene, method):
     np.testing.assert_allclose(m.at(middle), expected.at(middle), rtol=0, atol=1e-10)
 
 
+@compiled_only
 def test_the_notice_names_the_callback():
     with pytest.warns(UncompiledCallback, match=r"^motion of scene 'table'"):
         simulate(plain(ball_on_table(0.01, 40.0, 0.3, 0.02, 0.0, 0.01)), Moreau(1e-3))
 
 
+@compiled_only
 def test_joints_run_in_plain_python_where_one_of_several_callbacks_cannot_be_compiled():
     def weight(t, q, v, p, out):
         out[0], out[1] = 0.0, -9.81
@@ -211,6 +215,7 @@ def test_the_environment_can_ask_for_plain_python():
 # --- what a callback keeps, and what it writes into later
 
 
+@compiled_only
 def test_states_that_a_callback_keeps_stay_as_they_were():
     kept = []
 
@@ -230,6 +235,7 @@ def test_states_that_a_callback_keeps_stay_as_they_were():
         out[0] = 7.0  # nobody else's memory
 
 
+@compiled_only
 @pytest.mark.parametrize("way", ["flags", "base"])
 @pytest.mark.parametrize("method", [Moreau(1e-2), EventDriven()], ids=["moreau", "event-driven"])
 def test_no_way_leads_to_the_numbers_of_the_run(way, method):
