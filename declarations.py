@@ -18,30 +18,26 @@ from pathlib import Path
 from inference import constants, variables
 from kernel_sources import IN_C, MERGED, POINTERS, SCALARS, Kernel, Type, kernel, kernels, marks
 
-DECLARED = {
-    f"cython.{mark}" for mark in ("ccall", "cfunc", "nogil", "final")
-}  # not to be said to Cython again
+# What Cython is not to be told again
+DECLARED = {f"cython.{mark}" for mark in ("ccall", "cfunc", "nogil", "final")}
 LIBRARY = {"math": "libc.math"}
 
 
 def signature(k: Kernel, f: ast.FunctionDef) -> str | None:
     """A function as C declares it; None: it is Python's."""
-    args = [a for a in f.args.args if a.arg != "self"]
-    kinds = [k.type_of(a.annotation) for a in args]
-    result = k.type_of(f.returns)
+    args, marked = [a for a in f.args.args if a.arg != "self"], marks(f)
+    kinds, result = [k.type_of(a.annotation) for a in args], k.type_of(f.returns)
+    if marked & {"cython.ccall", "cython.cfunc"} and "cython.ufunc" not in marked:
+        how, free = "cpdef" if "cython.ccall" in marked else "cdef", "cython.nogil" in marked
+    elif f.name.startswith("__") or marked or not {None, "object"}.isdisjoint((result, *kinds)):
+        return None
+    else:
+        how, free = "cdef", True
     first = len(args) - len(f.args.defaults)
-    own = [f"{t} {a.arg}" + "=*" * (i >= first) for i, (t, a) in enumerate(zip(kinds, args, strict=True))]
-    given = ", ".join(["self"] * (len(args) < len(f.args.args)) + own)
-    marked = marks(f)
-    if "cython.ufunc" in marked:
-        return None
-    if "cython.ccall" in marked or "cython.cfunc" in marked:
-        given, result = given.replace("None ", "object "), result or "object"
-        free = " noexcept nogil" if "cython.nogil" in marked else ""
-        return f"{'cpdef' if 'cython.ccall' in marked else 'cdef'} {result} {f.name}({given}){free}"
-    if f.name.startswith("__") or marked or not {None, "object"}.isdisjoint((result, *kinds)):
-        return None
-    return f"cdef {result} {f.name}({given}) noexcept nogil"
+    own = ["self"] if len(args) < len(f.args.args) else []
+    for i, (kind, a) in enumerate(zip(kinds, args, strict=True)):
+        own.append(f"{kind or 'object'} {a.arg}" + "=*" * (i >= first))
+    return f"{how} {result or 'object'} {f.name}({', '.join(own)})" + " noexcept nogil" * free
 
 
 def declared(k: Kernel, f: ast.FunctionDef, owner: str | None = None) -> list[str]:

@@ -1,8 +1,10 @@
 """Types of variables and constants of kernels: those of all that is assigned to them, as far as it is known.
 
-found, most = False, 0.0           bint, double
-c = s.mode[i] + n                  Py_ssize_t: an entry of `Indices`, and an argument
-n_a, n_f = gather(s, plastic)      what the function says that it returns
+    found, most = False, 0.0           bint, double
+    c = s.mode[i] + n                  Py_ssize_t: an entry of `Indices`, and an argument
+    n_a, n_f = gather(s, plastic)      what the function says that it returns
+
+What is not known so, or would be another number in C than in Python, is left to Cython or to an annotation.
 """
 
 from __future__ import annotations
