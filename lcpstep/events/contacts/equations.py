@@ -15,7 +15,7 @@ from lcpstep.events.rows.equations import (
 )
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.dynamics import gaps
-from lcpstep.kernels.vectors import largest, product
+from lcpstep.kernels.vectors import copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, max
 
 
@@ -42,6 +42,14 @@ def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
         if sticks or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0):
             s.slip[c] = 0.0
     return s.coefficients.measure(s.clock.inside(t), q, s.slip)
+
+
+def renew_friction(s: Rubbing, t: float) -> bool:
+    """Coefficients at the sliding velocities that the impact before has left; False where one is none."""
+    if not s.coefficients.varies:
+        return True
+    copy(s.slip, after(s.velocity, s.n_j + s.n_c), s.n_c)
+    return s.coefficients.measure(s.clock.inside(t), s.q, s.slip)
 
 
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import ACCUMULATION, IMPACT, JAM, JUMP, LEANS, NO_IMPULSES, OPEN, SLIDES, STICKS
-from lcpstep.events.contacts.equations import measure
+from lcpstep.events.contacts.equations import measure, renew_friction
 from lcpstep.events.contacts.parting import approaches, let_go, rejoin
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import measure_velocities, sliding, still, stop_rows
@@ -25,7 +25,7 @@ from lcpstep.kernels.record import Record
 from lcpstep.kernels.recurrence import FOR_EVER, looks_back
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
 from lcpstep.kernels.tally import Tally
-from lcpstep.kernels.vectors import clear, copy
+from lcpstep.kernels.vectors import clear
 from lcpstep.pointers import abs, after, inf, max, min
 
 ROUNDS = 100_000  # problems of impacts at one instant
@@ -62,21 +62,13 @@ def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
         else:
             if looks_back(s.rounds):
                 look_back(s.rows)
-            if s.rounds > 0 and not ((s.in_turn or let_go(s, t)) and renew_friction(s, t)):
+            if s.rounds > 0 and not s.in_turn and not let_go(s, t):
                 return NOT_FINITE
             s.rounds += 1
             # The last ones of what is held from all sides may leave speeds that but rounding contradicts
             if not strike(s, record, tally, t, s.rounds > ROUNDS) and not (s.rounds > 1 and fades(s.rows)):
                 return NO_IMPULSES
     return TOO_MANY_EVENTS
-
-
-def renew_friction(s: Rubbing, t: float) -> bool:
-    """Coefficients at the sliding velocities that the impact before has left; False where one is none."""
-    if not s.coefficients.varies:
-        return True
-    copy(s.slip, after(s.velocity, s.n_j + s.n_c), s.n_c)
-    return s.coefficients.measure(s.clock.inside(t), s.q, s.slip)
 
 
 def strike(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) -> bool:

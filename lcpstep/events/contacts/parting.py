@@ -9,7 +9,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
-from lcpstep.events.contacts.equations import measure
+from lcpstep.events.contacts.equations import measure, renew_friction
 from lcpstep.events.contacts.modes import decide
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import hold_modes
@@ -44,7 +44,7 @@ def let_go(s: Rubbing, t: float) -> bool:
         for c in range(s.n_c):
             if s.mode[c] != OPEN and s.new_mode[c] == OPEN:
                 s.mode[c], s.parting[c] = OPEN, 1
-    return True
+    return renew_friction(s, t)
 
 
 def rejoin(s: Rubbing) -> None:
