@@ -14,7 +14,7 @@ import functools
 from collections.abc import Iterator
 from pathlib import Path
 
-from kernel_sources import SCALARS, Kernel, Type, bases, kernel, qualified
+from kernel_sources import SCALARS, Kernel, Type, bases, kernel, path_of, qualified
 
 ENTRIES = {"Doubles": "double", "Indices": "Py_ssize_t", "Flags": "Py_ssize_t"}
 OF_POINTERS = {"abs": "double", "max": "double", "min": "double", "inf": "double", "nan": "double"}
@@ -79,8 +79,7 @@ def constant_type(k: Kernel, name: str) -> Type:
     home = k.homes.get(name, k.name)
     if home == "lcpstep.pointers":
         return OF_POINTERS.get(name)
-    path = k.root / f"{home.replace('.', '/')}.py"
-    return constants(k.root, home).get(name) if name.isupper() and path.exists() else None
+    return constants(k.root, home).get(name) if name.isupper() and path_of(k.root, home).exists() else None
 
 
 @functools.cache

@@ -35,7 +35,7 @@ class Kernel:
 
     def __init__(self, root: Path, name: str) -> None:
         self.root, self.name = root, name
-        self.path = root / f"{name.replace('.', '/')}.py"
+        self.path = path_of(root, name)
         self.text = self.path.read_text(encoding="utf-8")
         self.header = read(self.path.with_suffix(".pxd"))
         self.tree = ast.parse(self.text)
@@ -67,8 +67,13 @@ class Kernel:
     def home_of(self, name: str) -> Kernel | None:
         """The kernel that a name is from; None: of no kernel."""
         module = self.name if name in self.classes or name in self.functions else self.homes.get(name, "")
-        path = self.root / f"{module.replace('.', '/')}.py"
-        return kernel(self.root, module) if module.startswith("lcpstep.") and path.exists() else None
+        known = module.startswith("lcpstep.") and path_of(self.root, module).exists()
+        return kernel(self.root, module) if known else None
+
+
+def path_of(root: Path, module: str) -> Path:
+    """Where the source of a module lies."""
+    return root / f"{module.replace('.', '/')}.py"
 
 
 @functools.cache

@@ -25,7 +25,9 @@ from setuptools.command.build_ext import build_ext
 HERE = Path(__file__).resolve().parent
 DIGESTS = HERE / "build" / "digests"  # of what lies built beside its source, a file for each module
 SOURCES = "build/sources"  # as Cython reads them
-sys.path.insert(0, str(HERE))
+sys.path.insert(
+    0, str(HERE)
+)  # pip runs this file from elsewhere: what stands beside it is imported after this
 import declarations  # noqa: E402
 import kernel_sources  # noqa: E402
 import ready  # noqa: E402

@@ -110,10 +110,8 @@ def kernels() -> list[str]:
     import kernel_sources  # which an older Python, that is told so, could not read
 
     found = [kernel_sources.kernel(ROOT, name) for name in kernel_sources.kernels(ROOT)]
-    asked = {home for k in found for home in k.homes.values()} | {
-        k.name for k in found
-    }  # constants come from others
-    sources = [ROOT / f"{name.replace('.', '/')}.py" for name in asked if name.startswith("lcpstep.")]
+    asked = {home for k in found for home in (k.name, *k.homes.values())}  # constants come from others
+    sources = [kernel_sources.path_of(ROOT, name) for name in asked if name.startswith("lcpstep.")]
     files = [*filter(Path.exists, sources), *ROOT.glob("lcpstep/**/*.pxd"), *ROOT.glob("lcpstep/**/*.h")]
     return sorted(str(file.relative_to(ROOT)) for file in files)
 

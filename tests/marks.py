@@ -11,7 +11,9 @@ import pytest
 from lcpstep.callbacks import disabled
 
 COMPILES = not disabled() and find_spec("numba") is not None  # else own callbacks run in plain Python
-compiled_only = pytest.mark.skipif(not COMPILES, reason="nothing is compiled")
+compiled_only = pytest.mark.skipif(
+    not COMPILES, reason="own callbacks are not compiled: numba is missing, or switched off"
+)
 
 
 def slow(cases: Iterable[Any], *long: Any) -> list[Any]:

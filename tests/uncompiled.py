@@ -14,7 +14,7 @@ ROOT = Path(lcpstep.__file__).parent
 sys.path.insert(0, str(ROOT.parent))  # where what builds it lies
 kernel_sources = importlib.import_module("kernel_sources")
 MERGED = kernel_sources.MERGED  # into others
-BUILT = {name: ROOT.parent / f"{name.replace('.', '/')}.py" for name in kernel_sources.kernels(ROOT.parent)}
+BUILT = {name: kernel_sources.path_of(ROOT.parent, name) for name in kernel_sources.kernels(ROOT.parent)}
 
 
 class Sources:
