@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrangian import scenes
+from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, scenes
 from lagrangian.scenes.rough_contacts import critical_friction
-from lcpstep import EventDriven, Kind, Moreau, Status, energy, simulate
+from lcpstep import EventDriven, Kind, Located, Moreau, Status, energy, simulate
 
 ASKED = EventDriven(1e-11, 1e-11, jamming="impact")
 
@@ -73,3 +73,44 @@ def test_what_is_to_follow_a_jam_is_named():
     with pytest.raises(ValueError, match="jamming: expected"):
         EventDriven(jamming="bounce")
     assert simulate(rod(mu=1.8, angle=1.1), EventDriven()).status == Status.PAINLEVE_INCONSISTENT
+
+
+def corner(mu):
+    """A mass in a corner of a floor and a wall, which are belts: each presses it against the other, and slides."""
+    return Scene(
+        system=LinearSystem(np.eye(2), force=[0.0, -9.81]),
+        contacts=LinearContacts(np.eye(2)[::-1], friction=Coulomb(mu, np.eye(2), slip=[1.0, 1.0])),
+        q0=[0.0, 0.0], v0=[0.0, 0.0], t_span=(0.0, 0.1),
+    )  # fmt: skip
+
+
+METHODS = [EventDriven(), ASKED, Located(1e-3), Located(1e-2, order=4), Located(tolerance=1e-6)]
+
+
+@pytest.mark.parametrize("method", METHODS, ids=repr)
+@pytest.mark.parametrize("mu", [0.2, 0.9, 1.0, 1.1, 3.0])
+def test_belts_that_press_a_mass_onto_each_other_leave_it_no_forces_from_one_on(mu, method):
+    """p_floor = mu p_wall + g and p_wall = mu p_floor: only below one are they pushes; nor would one of them do."""
+    run = simulate(corner(mu), method, keep=[0.1])
+    if mu < 1.0:
+        assert run.status == Status.DONE
+        floor = 0.1 * 9.81 / (1.0 - mu**2)
+        assert np.sum(run.impulse, axis=0)[:2] == pytest.approx([floor, mu * floor], rel=1e-9)
+    else:
+        assert run.status == Status.PAINLEVE_INCONSISTENT
+        assert "no forces of the closed contacts [0, 1] together" in run.message
+
+
+def close_in(t, q, v, p, out):
+    out[:, 0], out[:, 1], out[:, 2] = 0.5 * t**2, t, 1.0
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.5, 2.0])
+def test_walls_that_close_in_have_no_forces_and_no_paradox(mu):
+    """The same without friction: it is not friction that leaves none."""
+    scene = Scene(
+        system=LinearSystem(np.eye(2)),
+        contacts=LinearContacts([[0.0, 1.0], [0.0, -1.0]], motion=close_in, friction=Coulomb(mu, [[1.0, 0.0]] * 2)),
+        q0=[0.0, 0.0], v0=[1.0, 0.0], t_span=(0.0, 0.1),
+    )  # fmt: skip
+    assert simulate(scene, EventDriven()).status not in (Status.DONE, Status.PAINLEVE_INCONSISTENT)

@@ -30,7 +30,14 @@ from lcpstep.events.rows.equations import size_of_acceleration
 from lcpstep.events.rows.held import constrain
 from lcpstep.events.rows.keep import tell
 from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
-from lcpstep.events.rows.problem import fill, leave_independent, list_unknowns, row_of, solve_forces
+from lcpstep.events.rows.problem import (
+    fill,
+    leave_independent,
+    list_unknowns,
+    row_of,
+    solve_forces,
+    stand_without_friction,
+)
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import motion_of
 from lcpstep.kernels.record import Record
@@ -101,7 +108,10 @@ def begin_to_slide(s: Rubbing, n_a: int, n_f: int) -> bool:
 
 
 def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
-    """Solve; a sliding contact whose own mobility is not positive has no answer, or two; so may several together."""
+    """Solve; a sliding contact whose own mobility is not positive has no answer, or two; so may several together.
+
+    `culprit` is the contact, -1 where several have no answer that would have one without friction.
+    """
     m, jams = n_a + n_f, -1
     for a in range(n_a):
         c = s.problem.ids[a]
@@ -112,7 +122,8 @@ def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
         if n_a == 1:
             return PAINLEVE_INCONSISTENT if s.problem.rate[0] < 0.0 else PAINLEVE_INDETERMINATE
     if not solve_forces(s.rows, n_a, n_f):
-        return PAINLEVE_INCONSISTENT if jams >= 0 else NO_FORCES
+        s.rows.culprit = s.rows.culprit if jams >= 0 else -1
+        return PAINLEVE_INCONSISTENT if jams >= 0 or stand_without_friction(s.rows, n_a) else NO_FORCES
     other = opened_or_closed(s.problem, n_a) if jams < 0 and n_f == 0 else -1
     if other >= 0:
         s.rows.culprit = s.problem.ids[other]

@@ -85,6 +85,8 @@ class ContactRun(Integrated):
     def paradox(self, code: int) -> str:
         """Painleve's paradox in words: the contact, and the coefficient of friction from which on it occurs."""
         c = int(self.system.rows.culprit)
+        if c < 0:
+            return f"no forces of the closed contacts {self.closed_ones} together, which rub, keep them from passing"
         mu, critical = self.system.coefficient(c), self.system.critical_friction(c)
         alone = critical > 0.0 and mu >= (1.0 - 1e-9) * critical
         limit = f" (critical at this state: {critical:.9g})" if alone else " beside what else is held"

@@ -41,16 +41,28 @@ def list_unknowns(s: Contacts) -> tuple[int, int]:
 def fill(s: Contacts, n_a: int, n_f: int) -> None:
     """The matrix of the problem, sliding friction in the columns of the normals."""
     m, W = n_a + n_f, s.problem.mobility
-    for a in range(m):
-        row = after(s.D_on, row_of(s, a, n_a) * s.n_r)
-        for b in range(m):
-            W[a * m + b] = row[row_of(s, b, n_a)]
+    fill_without_sliding(s, n_a, n_f)
     for b in range(n_a if s.n_t > 0 else 0):
         c = s.problem.ids[b]
         if s.free[c] == 0 and rubs(s, c):
             for a in range(m):
                 k = row_of(s, a, n_a) * s.n_r + row_of(s, b, n_a) + s.n_c
                 W[a * m + b] -= s.direction[c] * s.mu[c] * s.D_on[k]
+
+
+def fill_without_sliding(s: Contacts, n_a: int, n_f: int) -> None:
+    """The same without the friction of what slides."""
+    m = n_a + n_f
+    for a in range(m):
+        row = after(s.D_on, row_of(s, a, n_a) * s.n_r)
+        for b in range(m):
+            s.problem.mobility[a * m + b] = row[row_of(s, b, n_a)]
+
+
+def stand_without_friction(s: Contacts, n_a: int) -> bool:
+    """Whether the normals alone have forces for the accelerations in `rate`."""
+    fill_without_sliding(s, n_a, 0)
+    return solve_contacts(s.problem, n_a, 0)
 
 
 def solve_forces(s: Contacts, n_a: int, n_f: int) -> bool:
