@@ -25,6 +25,13 @@ DRIFT = 1e-12  # error of a direction, relative to its size, above which it is r
 
 def set_direction(entering: int, m: int, n: int, work: Workspace) -> None:
     """Fill dx and dw, the change of the basic variables with the entering one: z_j is j, w_i is n + 1 + i."""
+    find_direction(entering, m, n, work)
+    for p in range(m):  # which are not basic
+        work.dslack[work.tight[p]] = 0.0
+
+
+def find_direction(entering: int, m: int, n: int, work: Workspace) -> None:
+    """The same; on the tight rows dw is the error of dx."""
     solve_direction(entering, m, n, work)
     for _ in range(2):
         if drift(m, work) <= DRIFT:

@@ -22,7 +22,7 @@ from lcpstep.lcp.basis import pivot, refactorise, set_direction
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, RAY, SOLVED
 from lcpstep.lcp.workspace import Workspace
 from lcpstep.pointers import abs, after, inf, max, min
-from lcpstep.rows import subtract
+from lcpstep.rows import excesses, largest_entry, lowest_entry, ratios, subtract
 
 TIE = 1e-13  # values this close, relative to the largest basic value, reach zero together
 NOTHING = -1
@@ -113,33 +113,27 @@ def first_zero(m: int, n: int, smallest: float, work: Workspace) -> float:
 
     Leaves in `smallest` the size above which a component of the direction counts.
     """
-    x, dx, w, dw = work.x, work.dx, work.slack, work.dslack
-    steepest, largest = 1.0, 0.0
-    for q in range(m):
-        steepest, largest = max(steepest, abs(dx[q])), max(largest, abs(x[q]))
-    for i in range(n):
-        steepest, largest = max(steepest, abs(dw[i])), max(largest, abs(w[i]))
-    smallest, slack, bound = smallest * steepest, TIE * largest, inf
-    for q in range(m):
-        if dx[q] < -smallest:
-            bound = min(bound, (max(x[q], 0.0) + slack) / -dx[q])
-    for i in range(n):
-        if dw[i] < -smallest and work.w_place[i] < 0:
-            bound = min(bound, (max(w[i], 0.0) + slack) / -dw[i])
+    x, dx, w, dw, trial = work.x, work.dx, work.slack, work.dslack, work.trial
+    smallest *= max(1.0, max(largest_entry(dx, m), largest_entry(dw, n)))
+    slack = TIE * max(largest_entry(x, m), largest_entry(w, n))
+    ratios(trial, x, slack, dx, smallest, m)
+    bound = lowest_entry(trial, m)
+    ratios(trial, w, slack, dw, smallest, n)
     work.smallest = smallest
-    return bound
+    return min(bound, lowest_entry(trial, n))
 
 
 def list_ties(bound: float, m: int, n: int, work: Workspace) -> int:
     """List in `tied` the variables that reach zero within the bound; returns how many."""
-    x, dx, w, dw = work.x, work.dx, work.slack, work.dslack
-    listed, smallest, tied = work.tied, work.smallest, 0
+    listed, trial, tied = work.tied, work.trial, 0
+    excesses(trial, work.x, bound, work.dx, work.smallest, m)
     for q in range(m):
-        if dx[q] < -smallest and x[q] <= -bound * dx[q]:
+        if trial[q] <= 0.0:
             listed[tied] = work.basic[q]
             tied += 1
+    excesses(trial, work.slack, bound, work.dslack, work.smallest, n)
     for i in range(n):
-        if dw[i] < -smallest and w[i] <= -bound * dw[i] and work.w_place[i] < 0:
+        if trial[i] <= 0.0:
             listed[tied] = n + 1 + i
             tied += 1
     return tied
