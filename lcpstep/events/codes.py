@@ -5,10 +5,12 @@ from __future__ import annotations
 from lcpstep.trajectory import Kind, Status
 
 # Mode of a contact. One that leans does not slide either, but has all the friction that it can: another one, which
-# sticks, keeps it from sliding. Without friction what is closed slides
+# sticks, keeps it from sliding. Without friction what is closed slides, and from an impact on, until the forces
+# decide, SLIDES says no more than closed
 OPEN, STICKS, SLIDES, LEANS = range(4)
 BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH = range(6)  # what comes next
 LOOKED, ENTERED, JUMPED = range(3)  # whether guards of modes wait to be looked at, and why
+# Of `Kind`, whose STICK says that a contact stays closed, whether it sticks or slides
 IMPACT, ACCUMULATION, STAYS_CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE, JAM = (int(kind) for kind in Kind)
 RELATIVE_STEP = 7.4e-5  # of differences of the field, of fourth order: eps^(1/5)/10
 EDGE = 1e-9  # relative distance of a friction force from the edge of its cone, below which it is on it; and alike

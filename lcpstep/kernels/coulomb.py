@@ -39,9 +39,10 @@ SOLVED = 0
 
 
 class ContactProblem:
-    """The contacts of a step, the joints eliminated, and where their complementarity problem is written.
+    """The contacts of a step or an event, the joints eliminated, and where their complementarity problem is written.
 
-    mobility, rate, impulse    of m = n_a contacts and n_f tangents: (m, m), (m,), (m,); normals first;
+    mobility, rate, impulse    of m = n_a contacts and n_f tangents: (m, m), (m,), (m,); normals first; rates are
+                               velocities or, of forces in the place of impulses, accelerations without any;
                                the rates of joints follow until they are eliminated
     mu : (n_c,)
     ids      rows that take part; the first are the contacts'

@@ -21,7 +21,10 @@ class Course:
             return self.go_on(goal)
 
     def go_on(self, goal: int) -> int:
-        """Go on to the end of the span, or to step number `goal`; says why it returned."""
+        """Go on to the end of the span, or to step number `goal`; says why it returned.
+
+        DONE hinders nothing: a step, or a portion up to its goal, returns it as well; any other code ends the loop.
+        """
         code, stage = DONE, AHEAD
         while code == DONE:
             stage = self.stage(goal)

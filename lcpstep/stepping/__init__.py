@@ -5,7 +5,7 @@ sparse                   the same for large systems: `sparse_equations`, `sparse
                          `sparse_coupled`, `sparse_coulomb`, `sparse_stiction`, `sparse_path`, `sparse_updates`
 constraints              what contacts, tangents and joints have in common as rows of a step
 located, pieces          impacts at their own times: method, and a run with its steps
-rubbing                  the same with friction, and with joints at order 4 or by a tolerance
+rubbing                  the same with friction or joints
 step_control             steps by a tolerance: `moreau_by_tolerance`, `located_by_tolerance` (`located_parts`);
                          `hidden_forces`, `hidden_switches`: what forces hide; `adaptive`: their sizes
 step_run                 what runs by steps share; what all runs do: `lcpstep.running`

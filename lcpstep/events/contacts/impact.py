@@ -129,7 +129,7 @@ def strike_together(s: Rubbing, record: Record, tally: Tally, t: float, plastic:
 
 
 def gather(s: Rubbing, plastic: bool) -> tuple[int, int]:
-    """The contacts that take part in an impact, and their problem; see `pose`."""
+    """The contacts that take part in an impact, which are closed from now on, and their problem; see `pose`."""
     for c in range(s.n_c):
         least = s.terms[c] if s.parting[c] == 0 else -s.terms[c]
         if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= least):
@@ -175,6 +175,7 @@ def strike_with(
 def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
     """Impulses of n_a contacts, n_f of them with tangents, by the law of impact; False where there are none.
 
+    By Moreau's law u+ + r u- = W p + (1 + r) u-: that is `rate`, for u- <= 0; with the tangents' it is the same.
     An obstacle whose velocity jumps takes along what lies on it: u- = 0.
     """
     own = s.in_turn or plastic

@@ -230,15 +230,15 @@ def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
 
 def adopt_modes(s: Rubbing) -> int:
     """Take over the modes decided, and hold their rows, or others that carry the load where these do not."""
-    take_over(s)
+    take_over_modes(s)
     stands = hold_modes(s.rows)
     if stands and not braced(s):
-        take_over(s)
+        take_over_modes(s)
         stands = hold_modes(s.rows)
     return DONE if stands else PAINLEVE_INCONSISTENT
 
 
-def take_over(s: Rubbing) -> None:
+def take_over_modes(s: Rubbing) -> None:
     """The modes decided; what leans on others sticks where these, or nothing but it, can carry it."""
     leaning = 0
     for c in range(s.n_c):

@@ -1,4 +1,7 @@
-"""A Runge-Kutta step of a system with contacts, up to the first event within it, as kernels."""
+"""A Runge-Kutta step of a system with contacts, up to the first event within it, as kernels.
+
+What that event leads to (`arrive`) is the same of other steps (`stepping.rubbing`).
+"""
 
 from __future__ import annotations
 

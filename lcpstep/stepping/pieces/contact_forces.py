@@ -22,7 +22,7 @@ from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, keep_closed
 from lcpstep.stepping.pieces.smooth import answer_forces
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.pieces.switches import release, release_time, stick, turn
+from lcpstep.stepping.pieces.switches import count_turn, release, release_time, stick
 
 
 def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) -> bool:
@@ -68,7 +68,7 @@ def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) ->
                 continue
         if w.status[c] == OPEN:
             stick(w, record, c, t)
-            turn(m, plan, w, c, 0.0, False)
+            count_turn(m, plan, w, c, 0.0, False)
         w.older[c], w.older_time[c] = force, t + 0.5 * rest
         w.force_now[c] = force
     return True

@@ -24,7 +24,7 @@ from lcpstep.stepping.pieces.keep import keep
 from lcpstep.stepping.pieces.magnitudes import speed_terms
 from lcpstep.stepping.pieces.smooth import mobility, renew_forces, renew_mobility
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.pieces.switches import idle, stick, turn
+from lcpstep.stepping.pieces.switches import count_turn, idle, stick
 
 
 def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
@@ -34,7 +34,7 @@ def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
         w.gap[c], w.grounded[c] = 0.0, GROUND
         if w.rate[c] <= ROUNDING * speed_terms(plan, w, c):
             stick(w, record, c, now)
-            turn(m, plan, w, c, 0.0, False)
+            count_turn(m, plan, w, c, 0.0, False)
         idle(w)
         return FINISHED
     if not renew_mobility(m, plan, w, now):

@@ -38,13 +38,13 @@ from lcpstep.stepping.pieces.sequences import (
     at_this_instant,
     choose_collapsing,
     choose_connected,
-    closes,
+    is_over,
     measure_rates,
     note_hit,
 )
 from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.pieces.switches import idle, release, stick, turn
+from lcpstep.stepping.pieces.switches import count_turn, idle, release, stick
 
 SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike in speed, land together
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
@@ -96,7 +96,7 @@ def answer(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float, 
                 note_hit(plan, w, c)
                 if drifted:
                     w.close_hits[c] = IN_A_ROW
-                w.plastic[c] = 1 if drifted or closes(m, plan, w, c, n_s == 1, t) else 0
+                w.plastic[c] = 1 if drifted or is_over(m, plan, w, c, n_s == 1, t) else 0
                 collapsed = collapsed or (w.plastic[c] == 1 and w.close_hits[c] >= IN_A_ROW)
             r = 0.0 if w.plastic[c] == 1 else m.restitution[c]
             w.b[k] = w.rate[c] + r * min(w.before[c], 0.0)
@@ -118,8 +118,9 @@ def answer(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float, 
 
 
 def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
-    """Contacts that fire now; their number.
+    """Contacts that fire now; their number, the velocities of all gaps before it into `before`.
 
+    The gaps of those chosen are zero from now on; what falls freely has the speed that it has left with (`fall`).
     Those that close with one speed land together, those that touched before are pushed together, and so are those
     of which rounding hides which came first, where that matters, if by a third one. Others whose gaps happen to be
     zero at the same time are struck one after another, as they would be a little apart.
@@ -132,7 +133,7 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
         # Rounding must not add up over chattering: it strikes with the speed that it left with
         if w.fall[c] > 0.0 and w.rate[c] < 0.0 and closing:
             w.rate[c] = -w.fall[c]
-        w.before[c], w.p[c] = w.rate[c], 0.0  # looked at
+        w.before[c], w.p[c] = w.rate[c], 0.0  # 1: is among them
     w.chosen[0] = first
     if w.n_c == 1:
         w.gap[first], w.grounded[first] = 0.0, GROUND
@@ -261,7 +262,7 @@ def after_impact(m: Model, plan: Plan, w: Work, record: Record, c: int, p: float
         if w.rate[c] < 0.0:  # by rounding, which no impulse ends
             touch(w, c)
         return
-    turn(m, plan, w, c, before, True)
+    count_turn(m, plan, w, c, before, True)
     if w.plastic[c] == 1:
         T = 0.0
         if w.half[c] < 0.0 and w.close_hits[c] < IN_A_ROW:

@@ -123,7 +123,7 @@ class Steps(Stepwise):
                 code = self.piece(t)
                 c = self.found if code == FINISHED else NOBODY
             if c != NOBODY and code == FINISHED:
-                code = self.struck(t, c)
+                code = self.take_event(t, c)
             if code != FINISHED and code != AGAIN:
                 return code
 
@@ -141,7 +141,7 @@ class Steps(Stepwise):
         code = self.follow(t)
         return STOPPED if code == FINISHED and self.w.blind > 0.0 else code
 
-    def struck(self, t: float, c: int) -> int:
+    def take_event(self, t: float, c: int) -> int:
         """The event of a contact or of a corner; STOPPED where steps by a tolerance want to look at it."""
         pausing = self.w.pausing and c != CORNER
         if pausing:

@@ -54,7 +54,7 @@ from lcpstep.stepping.pieces.smooth import (
     settle_state,
 )
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.pieces.switches import idle, release, stick, turn
+from lcpstep.stepping.pieces.switches import count_turn, idle, release, stick
 from lcpstep.stepping.pieces.times import at_corner, within
 
 SLOW = 1e-3  # of a step: a touch is no event twice within so short a time
@@ -217,7 +217,7 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int
         again = w.sigma - w.last[c] <= SLOW * plan.h
         if w.rate[c] <= still or (again and w.rate[c] <= SLOW * plan.h * acceleration_terms(m, w, c)):
             stick(w, record, c, t)
-            turn(m, plan, w, c, 0.0, False)
+            count_turn(m, plan, w, c, 0.0, False)
         w.last[c] = w.sigma
         idle(w)
         return FINISHED
@@ -227,7 +227,7 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int
     biases(m, w, t, w.q, w.v)
     if not renew_mobility(m, plan, w, t):
         return NOT_FINITE
-    for d in range(w.n_c):  # by which `closes` judges the next hop
+    for d in range(w.n_c):  # by which `is_over` judges the next hop
         w.half[d] = 0.5 * (product(w.G, w.a, d, w.n_q) + w.bias[d])
     n_s = strike(m, plan, w, record, c, t)
     if n_s <= 0:

@@ -31,7 +31,7 @@ PER_PERIOD = 16  # pieces of exact motion per period of a moving frame or obstac
 NO_GAP = 1e-3  # of a tolerance
 
 
-def at_rest(m: Model, trapezoidal: bool) -> Model:
+def carried_where_possible(m: Model, trapezoidal: bool) -> Model:
     """The model, from now on in the coordinates in which a moving frame rests, where its steps allow that.
 
     There the frame puts no force on the system; the obstacles move with it instead, and where they are is known

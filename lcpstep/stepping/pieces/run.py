@@ -20,7 +20,7 @@ from lcpstep.stepping.interpolation import Bent
 from lcpstep.stepping.located_by_tolerance import Attempts
 from lcpstep.stepping.pieces.carried import displaced
 from lcpstep.stepping.pieces.polynomial_steps import PolynomialSteps
-from lcpstep.stepping.pieces.prepare import MANY_EXACTLY, at_rest, plan, start
+from lcpstep.stepping.pieces.prepare import MANY_EXACTLY, carried_where_possible, plan, start
 from lcpstep.stepping.pieces.quadratic_steps import QuadraticSteps
 from lcpstep.stepping.pieces.state import Plan
 from lcpstep.stepping.step_run import StepRun
@@ -39,7 +39,7 @@ class LocatedRun(StepRun):
     """One run: the loop with its state."""
 
     def __init__(self, method: Located, scene: Scene, kept: Kept) -> None:
-        self.model = at_rest(model(scene), method.order == 2)
+        self.model = carried_where_possible(model(scene), method.order == 2)
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p)
         steps = kept.of_steps(number(scene.t_span, method.h)) if method.tolerance is None else None

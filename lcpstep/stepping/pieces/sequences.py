@@ -108,7 +108,7 @@ def note_hit(plan: Plan, w: Work, c: int) -> None:
     w.last[c] = w.sigma
 
 
-def closes(m: Model, plan: Plan, w: Work, c: int, alone: bool, t: float) -> bool:
+def is_over(m: Model, plan: Plan, w: Work, c: int, alone: bool, t: float) -> bool:
     """Whether the contact that fires is closed: its next hops are too short to be followed."""
     r = m.restitution[c]
     if r == 1.0 or r == 0.0:

@@ -1,4 +1,4 @@
-"""What the kernels of `Located` work with: constants of a run, the piece of smooth motion at hand, work space."""
+"""What the kernels of `Located` work with: constants of steps, the piece of smooth motion at hand, work space."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Plan:
     h
     made_for        length of pieces that the matrices in the place WHOLE are made for: h, but in parts of a step
     trapezoidal     a linear system, which order 2 moves by the trapezoidal rule
-    stiff           C or K is not zero; this, the next three and `constant` are asked of trapezoidal systems alone
+    stiff           C or K is not zero; this, the next two and `constant` are asked of trapezoidal systems alone
     steady          the acceleration without contact never changes
     plain           flat contacts at rest, of a linear system: gaps of order 2 follow from their own quadratics
     constant        M and the gap Jacobian are constant
@@ -154,7 +154,7 @@ class Work:
 
     What steps by a tolerance ask for:
     pausing         to stop after an event
-    fresh           whether nothing has happened since the start
+    fresh           whether no smooth interval has begun yet
     off             how far the last piece was put from where it led, onto obstacles and out of them
     blind           how far a single piece goes in which events are not looked for (0: they are)
     goal            the time at the end of the step

@@ -30,7 +30,7 @@ def idle(w: Work) -> None:
     w.idle += 1
 
 
-def turn(m: Model, plan: Plan, w: Work, c: int, u: float, struck: bool) -> None:
+def count_turn(m: Model, plan: Plan, w: Work, c: int, u: float, struck: bool) -> None:
     """Note that contact c strikes, closes or opens at speed u; where that goes on for ever, the motion is settled.
 
     What goes on at one instant has no end if its speeds are faint. An elastic contact may be struck as often as
@@ -85,7 +85,7 @@ def release(m: Model, plan: Plan, w: Work, record: Record, c: int, t: float, aft
     w.force_now[c] = w.older[c] = 0.0
     w.gap[c], w.rate[c] = 0.0, after
     record.note(t, c, 0.0, after, 0.0, RELEASE)
-    turn(m, plan, w, c, after, False)
+    count_turn(m, plan, w, c, after, False)
     w.events += 1
 
 

@@ -1,5 +1,6 @@
 """Steps of systems with planar friction or joints, every slip, stick and impact at its own time within the step.
 
-They are of one size, or chosen by a tolerance (`paced`). Modes, impacts and what decides about them are those of
-`events.contacts`; the motion between is that of `strides`.
+run       a run;  steps   what its loop calls, that of `events.contacts`, with the modes and impacts of that
+stride    one step up to its first event;  found   that event, and its time
+strides   the motion between: steps of order two or four;  paced   those by a tolerance
 """
