@@ -11,7 +11,7 @@ chaotic. What usually goes wrong: chattering, sticking, and release at a corner 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -79,12 +79,18 @@ def cam_follower(
         return float(out[0, 0]), float(out[0, 1]), float(out[0, 2])
 
     def exact(times: Array) -> tuple[Array, Array]:
-        u, du = motion(times)
+        u, du = motion()(times)
         c = np.array([lift(float(t))[:2] for t in times]).reshape(-1, 2) * relative
         return u - c[:, :1], du - c[:, 1:]
 
+    @cache
+    def motion() -> Piecewise:
+        c0, dc0, _ = lift(0.0)
+        free = Free(delta=0.5 * b / m, kappa=k / m, f0=-g0)
+        return Piecewise(free, restitution, (0.0, c0 + q0, dc0 + v0), lift, corners, period)
+
     corners = np.sort((profile.corners() - HALF_TURN) % (2.0 * math.pi)) / omega
-    scene = Scene(
+    return Scene(
         system=LinearSystem(
             M=checks.positive("m", m),
             C=checks.number("b", b),
@@ -115,18 +121,9 @@ def cam_follower(
         corners=corners,
         period=period,
         name="cam-follower",
+        # The follower itself is a free oscillator; exact where its damping needs no stiffness to go with it
+        exact=exact if k > 0.0 or b == 0.0 else None,
     )
-    # The follower itself is a free oscillator; exact where its damping needs no stiffness to go with it
-    c0, dc0, _ = lift(0.0)
-    motion = Piecewise(
-        Free(delta=0.5 * b / m, kappa=k / m, f0=-g0),
-        restitution,
-        (0.0, c0 + q0, dc0 + v0),
-        lift,
-        corners,
-        period,
-    )
-    return replace(scene, exact=exact) if k > 0.0 or b == 0.0 else scene
 
 
 def detachment_rpm(beta: float, m: float = 1.221, k: float = 1430.8, profile: CamProfile = PROFILE) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 
 from lagrangian import checks
 from lagrangian.checks import Array
@@ -35,10 +36,15 @@ def impact_oscillator(
     checks.positive("omega", omega)
 
     def exact(times: Array) -> tuple[Array, Array]:
-        y, w = motion(times)
+        y, w = motion()(times)
         return stop - y, -w
 
-    scene = Scene(
+    @cache
+    def motion() -> Piecewise:  # the gap y = stop - x moves as x does, above y = 0
+        free = Free(delta=zeta, kappa=1.0, f0=stop, cosine=-amplitude, omega=omega)
+        return Piecewise(free, restitution, (0.0, stop - q0, -v0))
+
+    return Scene(
         system=LinearSystem(
             M=1.0,
             C=2.0 * zeta,
@@ -64,11 +70,8 @@ def impact_oscillator(
         },
         period=2.0 * math.pi / omega,
         name="impact-oscillator",
+        exact=exact,
     )
-    # The gap y = stop - x moves as x does, above y = 0
-    free = Free(delta=zeta, kappa=1.0, f0=stop, cosine=-amplitude, omega=omega)
-    motion = Piecewise(free, restitution, (0.0, stop - q0, -v0))
-    return replace(scene, exact=exact)
 
 
 @checked

@@ -25,7 +25,6 @@ from lagrangian.scenes.drawings.blocks import (
 from lagrangian.scenes.drawings.common import Shapes
 from lagrangian.scenes.drawings.mechanisms import (
     cam,
-    cam_outline,
     crank,
     leaning_rod,
     links,
@@ -104,9 +103,7 @@ MAKERS: dict[str, Callable[[Any, Any], Drawing]] = {
         links, left=-p["link"], right=(p["n"] + 1) * p["link"] + max(0.0, p["speed"]) * s.t_span[1]
     ),
     "falling-rod": lambda s, p: partial(leaning_rod, half=s.p[0], reach=1.5),
-    "cam-follower": lambda s, p: partial(
-        cam, p=s.p, outline=cam_outline(s.p), relative=p["coordinates"] == "relative"
-    ),
+    "cam-follower": lambda s, p: partial(cam, p=s.p, relative=p["coordinates"] == "relative"),
     **dict.fromkeys(
         ("bilinear-oscillator", "driven-bilinear-oscillator"), lambda s, p: partial(two_springs, size=1.5)
     ),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -100,9 +101,9 @@ def crank(t: float, q: Any, *, p: Any) -> Shapes:
     ]
 
 
-def cam(t: float, q: Any, *, p: Any, outline: Any, relative: bool) -> Shapes:
-    """A cam that turns below its follower; its outline is that at the angle 0."""
-    out = np.zeros((1, 3))
+def cam(t: float, q: Any, *, p: Any, relative: bool) -> Shapes:
+    """A cam that turns below its follower."""
+    out, outline = np.zeros((1, 3)), cam_outline(tuple(p))
     rotating_cam(t, q, q, p, out)
     tip = p[2] + q[0] + (out[0, 0] if relative else 0.0)
     size = float(np.max(np.abs(outline)))
@@ -118,6 +119,7 @@ def cam(t: float, q: Any, *, p: Any, outline: Any, relative: bool) -> Shapes:
     ]
 
 
+@lru_cache(8)
 def cam_outline(p: Any) -> Any:
     """Places (n, 2) of a cam's outline, whose point at the angle beta is on top when it has turned by that."""
     still = np.array(p, dtype=float)
