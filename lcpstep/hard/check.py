@@ -23,6 +23,7 @@ periods:
 
 from __future__ import annotations
 
+import functools
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -247,8 +248,9 @@ def states(
     heavy: bool = False,
     **bounds: float,
 ) -> None:
-    """Register a check on the motion of a scene that has one in closed form: its `state_error`."""
+    """Register a check on the motion of a scene that has one in closed form, worked out once: its `state_error`."""
+    made = functools.cache(make)
 
     @check(scene, what, period=period, heavy=heavy, **bounds)
     def measure(solve: Solver) -> float:
-        return state_error(solve, make())
+        return state_error(solve, made())
