@@ -68,7 +68,7 @@ class Cam:
         kappa, psi, rho, direction = arc
         beta = self.omega * (t - n // 6 * self.period) + mp.pi / 2
         angle = (beta if direction > 0 else 2 * mp.pi - beta) - psi
-        x, y = kappa * mp.cos(angle), kappa * mp.sin(angle)
+        x, y = (kappa * part for part in mp.cos_sin(angle))
         root = mp.sqrt(rho * rho - y * y)
         second = -x - (x * x - y * y) / root - (x * y) ** 2 / root**3
         return x + root - OFFSET, direction * self.omega * (-y - x * y / root), self.omega**2 * second
@@ -101,7 +101,7 @@ class Flight:
     def gap(self, tau: Any, n: int) -> tuple[Any, Any, Any]:
         """Gap, its velocity and acceleration above the n-th arc."""
         (y0, v0), w = self.start, self.rate
-        cosine, sine = mp.cos(w * tau), mp.sin(w * tau)
+        cosine, sine = mp.cos_sin(w * tau)
         y, v = y0 * cosine + v0 / w * sine, v0 * cosine - w * y0 * sine
         c, dc, ddc = self.cam.lift(self.t0 + tau, n)
         corner, g, u = self.turned
@@ -121,7 +121,7 @@ class Flight:
         if self.u == 0 and alpha > SMOOTH:
             hop = min(hop, alpha / 10**6)  # the acceleration does not fall faster than that
         n, a, rising = self.n, mpf(0), False
-        step = hop / (64 if hop > REGULAR else 2)
+        step = hop / (64 if hop > REGULAR else 1.9)  # beyond the end, for Newton overshoots
         while self.t0 + a < limit:
             corner = self.cam.corner(n + 1) - self.t0
             b = min(a + step, corner)
@@ -151,7 +151,7 @@ def root(f: Any, a: Any, b: Any) -> Any:
         else:
             b = x
         new = x - value / slope if slope != 0 else a
-        if not a < new < b:
+        if abs(new - x) > EXACT * abs(x) and not a < new < b:
             new = (a + b) / 2
         if abs(new - x) <= EXACT * abs(x):
             return new
