@@ -161,6 +161,6 @@ print(*(float(x).hex() for x in surplus(model(m.scene), m.t[both], m.q[both], m.
 
 
 @pytest.mark.slow
-def test_the_balance_of_the_sources_alone_is_that_of_what_is_built(tmp_path):
-    built, plain = both_ways(tmp_path, PROGRAM)
+def test_the_balance_of_the_sources_alone_is_that_of_what_is_built():
+    built, plain = both_ways(PROGRAM)
     assert built == plain

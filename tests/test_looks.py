@@ -83,7 +83,7 @@ for name in ("bowl", "double-pendulum"):
 
 
 @pytest.mark.slow
-def test_uncompiled_looks_say_the_same(tmp_path):
-    built, plain = both_ways(tmp_path, LOOKED_AT)
+def test_uncompiled_looks_say_the_same():
+    built, plain = both_ways(LOOKED_AT)
     assert built == plain
     assert len(built) == 6

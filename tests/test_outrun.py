@@ -146,7 +146,7 @@ for parts in (1, 3, 64):
 
 
 @pytest.mark.slow
-def test_the_bound_of_the_sources_alone_is_that_of_what_is_built(tmp_path):
-    built, plain = both_ways(tmp_path, PROGRAM)
+def test_the_bound_of_the_sources_alone_is_that_of_what_is_built():
+    built, plain = both_ways(PROGRAM)
     assert built == plain
     assert len(built) == 3

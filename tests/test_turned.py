@@ -194,8 +194,8 @@ for parts in (1, 3, 64):
 
 
 @pytest.mark.slow
-def test_uncompiled_looks_at_what_turns_say_the_same(tmp_path):
-    built, plain = both_ways(tmp_path, PROGRAM)
+def test_uncompiled_looks_at_what_turns_say_the_same():
+    built, plain = both_ways(PROGRAM)
     assert built == plain
     assert len(built) == 6
 

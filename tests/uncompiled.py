@@ -4,6 +4,8 @@ import importlib
 import importlib.util
 import shutil
 import sys
+import tempfile
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -44,21 +46,28 @@ def kernels(package="lcpstep"):
             setattr(sys.modules[package], last, module)
 
 
-def copy_without_what_is_built(folder):
-    """The packages' sources alone, in a folder to be put on the path."""
+@cache
+def sources():
+    """Where the packages' sources lie alone, once for the tests of a process: bytecode of them takes long."""
     skipped = shutil.ignore_patterns("*.so", "*.pyd", "__pycache__")
+    folder = tempfile.TemporaryDirectory()
     for package in ("lcpstep", "lagrangian"):
-        shutil.copytree(ROOT.parent / package, folder / package, ignore=skipped)
+        shutil.copytree(ROOT.parent / package, Path(folder.name, package), ignore=skipped)
+    return folder
 
 
-def both_ways(folder, program):
-    """Lines that a program prints where the library is built, and where it is not, in this folder."""
-    copy_without_what_is_built(folder)
+def without_what_is_built(program):
+    """What a program prints where the library is not built."""
+    home = sources().name
+    plain = {"PYTHONPATH": home, "NUMBA_DISABLE_JIT": "1", "PYTHONDONTWRITEBYTECODE": ""}
+    return python(program, cwd=home, **plain)
+
+
+def both_ways(program):
+    """Lines that a program prints where the library is built, and where it is not."""
     asked = "from lcpstep.kernels import clock\nprint(clock.__file__)\n" + program
-    built, plain = (
-        python(asked, cwd=home, PYTHONPATH=str(home), NUMBA_DISABLE_JIT="1").splitlines()
-        for home in (ROOT.parent, folder)
-    )
+    built = python(asked, NUMBA_DISABLE_JIT="1").splitlines()
+    plain = without_what_is_built(asked).splitlines()
     assert plain[0].endswith(".py")
     assert not built[0].endswith(".py")
     return built[1:], plain[1:]

@@ -26,9 +26,9 @@ WAYS = ["event-driven, with derivatives", "event-driven, to a target", "in locks
 
 
 @pytest.fixture(scope="module")
-def lines(tmp_path_factory):
+def lines():
     """What is printed where the library is built, and where it is not: a line for each way."""
-    return both_ways(tmp_path_factory.mktemp("sources"), PROGRAM)
+    return both_ways(PROGRAM)
 
 
 @pytest.mark.slow

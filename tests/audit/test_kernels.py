@@ -181,8 +181,8 @@ for scene, method in (
 
 
 @pytest.mark.slow
-def test_kernels_say_the_same_uncompiled(tmp_path):
-    built, plain = both_ways(tmp_path, PROGRAM)
+def test_kernels_say_the_same_uncompiled():
+    built, plain = both_ways(PROGRAM)
     assert built == plain
 
 

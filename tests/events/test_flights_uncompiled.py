@@ -27,9 +27,9 @@ SCENES = {
 
 
 @pytest.mark.parametrize("scene", slow(SCENES, "chattering to rest", "absolute, damped", "forced"))
-def test_flights_are_the_same_uncompiled(tmp_path, scene):
+def test_flights_are_the_same_uncompiled(scene):
     expression, least = SCENES[scene]
-    built, plain = both_ways(tmp_path, PROGRAM.replace("{scene}", expression))
+    built, plain = both_ways(PROGRAM.replace("{scene}", expression))
     assert int(built[0].split()[0]) >= least
     assert built == plain
 
@@ -42,7 +42,7 @@ ARCS = {
 
 
 @pytest.mark.parametrize("scene", slow(ARCS, "an even belt, two coefficients", "a belt that sways"))
-def test_arcs_are_the_same_uncompiled(tmp_path, scene):
-    built, plain = both_ways(tmp_path, PROGRAM.replace("{scene}", ARCS[scene]))
+def test_arcs_are_the_same_uncompiled(scene):
+    built, plain = both_ways(PROGRAM.replace("{scene}", ARCS[scene]))
     assert int(built[0].split()[0]) >= 4
     assert built == plain

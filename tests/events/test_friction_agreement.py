@@ -146,6 +146,6 @@ for scene in (scenes.coulomb_oscillator(t_end=4.0), scenes.woodpecker(t_end=0.04
 
 
 @pytest.mark.slow
-def test_the_kernels_as_plain_python_give_the_same(tmp_path):
-    built, plain = both_ways(tmp_path, PROGRAM)
+def test_the_kernels_as_plain_python_give_the_same():
+    built, plain = both_ways(PROGRAM)
     assert built == plain

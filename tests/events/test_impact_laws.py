@@ -244,7 +244,7 @@ for scene in (bar, scenes.kane_pendulum(law="stronge")):
 
 
 @pytest.mark.slow
-def test_the_kernels_as_plain_python_give_the_same(tmp_path):
-    built, plain = both_ways(tmp_path, PROGRAM)
+def test_the_kernels_as_plain_python_give_the_same():
+    built, plain = both_ways(PROGRAM)
     assert built == plain
     assert len(built) == 4

@@ -71,13 +71,13 @@ print(*(float(x).hex() for x in (*run.x[-1], *run.impacts.impulse, *run.switches
 
 
 @pytest.mark.slow
-def test_systems_with_modes_and_contacts_of_the_sources_alone_are_those_of_what_is_built(tmp_path):
-    built, plain = both_ways(tmp_path, WITH_MODES)
+def test_systems_with_modes_and_contacts_of_the_sources_alone_are_those_of_what_is_built():
+    built, plain = both_ways(WITH_MODES)
     assert built == plain
     assert built[0].startswith("DONE")
 
 
 @pytest.mark.slow
-def test_motions_of_the_sources_alone_are_those_of_what_is_built(tmp_path):
-    built, plain = both_ways(tmp_path, PROGRAM)
+def test_motions_of_the_sources_alone_are_those_of_what_is_built():
+    built, plain = both_ways(PROGRAM)
     assert built == plain

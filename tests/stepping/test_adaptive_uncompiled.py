@@ -34,8 +34,8 @@ for scene, method in cases:
 
 
 @pytest.mark.slow
-def test_steps_are_alike_where_they_are_not_built(tmp_path):
-    built, plain = both_ways(tmp_path, MOTIONS)
+def test_steps_are_alike_where_they_are_not_built():
+    built, plain = both_ways(MOTIONS)
     assert plain == built
     assert len(plain) == 13
 

@@ -229,8 +229,8 @@ for order, tolerance in ((2, None), (4, None), (4, 1e-5)):
 
 
 @pytest.mark.slow
-def test_the_kernels_as_plain_python_give_the_same(tmp_path):
-    built, plain = both_ways(tmp_path, PROGRAM)
+def test_the_kernels_as_plain_python_give_the_same():
+    built, plain = both_ways(PROGRAM)
     assert built == plain
 
 

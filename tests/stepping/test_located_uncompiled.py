@@ -29,8 +29,8 @@ for scene, n, order in (
 
 
 @pytest.mark.slow
-def test_kernels_of_located_move_alike_where_they_are_not_built(tmp_path):
-    built, plain = both_ways(tmp_path, MOTIONS)
+def test_kernels_of_located_move_alike_where_they_are_not_built():
+    built, plain = both_ways(MOTIONS)
     assert plain == built
     assert len(plain) == 9
     assert "plastic impact" in plain[0]
