@@ -185,7 +185,9 @@ def variables(k: Kernel, f: ast.FunctionDef, owner: str | None) -> dict[str, str
         if known == before:
             break
     for _ in assigned:  # then without those of which not all is known
-        for name, kinds in told(k, known, assigned):
-            known[name] = known[name] if joined(kinds) == known[name] else None
+        lost = [name for name, kinds in told(k, known, assigned) if known[name] and joined(kinds) != known[name]]
+        if not lost:
+            break
+        known |= dict.fromkeys(lost)
     wanted = (*SCALARS, "object")
     return {name: str(kind) for name, kind in known.items() if kind in wanted and name not in parameters}

@@ -71,6 +71,7 @@ class Kernel:
         return kernel(self.root, module) if known else None
 
 
+@functools.cache
 def path_of(root: Path, module: str) -> Path:
     """Where the source of a module lies."""
     return root / f"{module.replace('.', '/')}.py"
