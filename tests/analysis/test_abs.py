@@ -14,6 +14,7 @@ from lcpstep.analysis.abs_basins import allowed_bias, basins, margins
 from lcpstep.analysis.abs_cycle import CYCLE, EQUILIBRIUM, LOCK, OUTCOMES, NoCycle, limit_cycle, peak
 from lcpstep.analysis.abs_parameters import bifurcation, edge, has_cycle, vanishing, with_thresholds
 from lcpstep.cli import main
+from lcpstep.cli.abs import _text
 from lcpstep.errors import StudyInterrupted
 
 MODELS = ["slip", "constant"]
@@ -184,17 +185,18 @@ def test_the_command_writes_what_it_prints(capsys, tmp_path):
     assert saved == printed
     assert saved["vanishes_below"] == pytest.approx(saved["peak"]["torque"], abs=1e-9)
     assert sum(saved["basins"]["shares"]["0"].values()) == pytest.approx(1.0)
+    assert f"limit cycle of period {saved['cycle']['period']:.12f} s" in _text(saved)
     assert np.load(tmp_path / "abs-basins.npz")["labels"].shape == (4, 6, 6)
     assert (tmp_path / "abs.png").stat().st_size > 1000
     assert main(arguments) == 2
     assert "exists already" in capsys.readouterr().err
-    quick = ["--grid", "0", "--points", "2", "--overwrite", "--no-picture", "--out", str(tmp_path)]
-    assert main(["abs", *quick]) == 0
-    assert re.findall(r"wrote (.*)", capsys.readouterr().out) == [str(tmp_path / "abs.json")]
     assert main(["abs", "--torque-min", "1700"]) == 2
     assert "torque_min: expected less" in capsys.readouterr().err
-    assert main(["abs", "--road", "wet", "--grid", "0"]) == 0
-    assert "the wheel locks in state 3" in capsys.readouterr().out
+    quick = ["--grid", "0", "--points", "2", "--overwrite", "--no-picture", "--out", str(tmp_path)]
+    assert main(["abs", "--road", "wet", *quick]) == 0
+    said = capsys.readouterr().out
+    assert "the wheel locks in state 3" in said
+    assert re.findall(r"wrote (.*)", said) == [str(tmp_path / "abs.json")]
 
 
 def test_the_command_runs_a_stop_of_the_full_model(capsys, tmp_path):

@@ -13,7 +13,7 @@ xarray = pytest.importorskip("xarray")
 @pytest.mark.slow
 def test_attractor_classifies_saves_and_compares(capsys, tmp_path):
     status, out, _ = run(
-        capsys, "attractor", "cam-follower", "--rpm", 358.5, "--starts", 30, "--compare", 400, "--h", 2e-5,
+        capsys, "attractor", "cam-follower", "--rpm", 358.5, "--starts", 12, "--compare", 400, "--h", 1e-4,
         "--out", tmp_path, "--json",
     )  # fmt: skip
     assert status == DONE
@@ -21,7 +21,7 @@ def test_attractor_classifies_saves_and_compares(capsys, tmp_path):
     assert {a["name"] for a in found["attractors"]} == {"O(3, 8)", "O(1, 2)"}
     assert 0.0 <= found["likeness"]["phase"]["p_value"] <= 1.0
     with xarray.open_dataset(tmp_path / "attractors.nc") as data:
-        assert data["start"].shape == (30, 2)
+        assert data["start"].shape == (12, 2)
         assert data.attrs["seed"] == 0
     assert (tmp_path / "attractors.png").stat().st_size > 1000
 
