@@ -141,11 +141,16 @@ def film(run: Any, *, drawing: Drawing | None = None, seconds: float | None = No
 
 def png(picture: Pixels) -> bytes:
     """One picture as a PNG of few colours."""
+    stream = io.BytesIO()
+    _in_few_colours(picture).save(stream, "png", optimize=False)
+    return stream.getvalue()
+
+
+def _in_few_colours(picture: Pixels) -> Any:
+    """Those of an octree, which takes a tenth of the time of the best ones."""
     from PIL import Image
 
-    stream = io.BytesIO()
-    Image.fromarray(picture).quantize(COLOURS).save(stream, "png", optimize=False)
-    return stream.getvalue()
+    return Image.fromarray(picture).quantize(COLOURS, Image.Quantize.FASTOCTREE)
 
 
 # --- writers
@@ -162,9 +167,7 @@ def _writer(path: Path) -> Callable[[Path, Iterator[Pixels], int], None]:
 
 
 def _gif(draft: Path, pictures: Iterator[Pixels], fps: int) -> None:
-    from PIL import Image
-
-    images = [Image.fromarray(x).quantize(COLOURS) for x in pictures]
+    images = [_in_few_colours(x) for x in pictures]
     images[0].save(draft, save_all=True, append_images=images[1:], duration=round(1000 / fps), loop=0)
 
 
