@@ -3,8 +3,9 @@
     m y'' + c y' + k y = f0 + fc cos(Omega t),      gap  side (y - s(t)) >= 0,      u+ = -r u-
 
 The flow between events is written with complex exponentials, the obstacle with mpmath's functions, and roots are
-bracketed by a scan and bisected: nothing is shared with the library but the equations. Infinitely many impacts
-are followed down to a speed of `DUST` and then summed; what is left out is of the order of its square.
+bracketed by a scan and halved, or found by Newton's method within: nothing is shared with the library but the
+equations. Infinitely many impacts are followed down to a speed of `DUST` and then summed; what is left out is of the
+order of its square.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from mpmath import mp, mpf
 
 mp.dps = 50
 DUST = mpf(10) ** -17
+NEAR = mpf(10) ** -12  # to a root, of the interval: two steps of Newton's method are left
 IMPACT, ACCUMULATION, STICK, RELEASE = range(4)
 FREE, CLOSED = 0, 1
 
@@ -52,7 +54,7 @@ def cam_lift(beta: Any, within: Any) -> tuple[Any, Any, Any]:
     if within > mp.pi:
         beta, within, direction = 2 * mp.pi - beta, 2 * mp.pi - within, -1
     _, kappa, psi, rho = next(arc for arc in CAM_ARCS if within <= arc[0])
-    x, y = kappa * mp.cos(beta - psi), kappa * mp.sin(beta - psi)
+    x, y = (kappa * part for part in mp.cos_sin(beta - psi))
     root = mp.sqrt(rho**2 - y**2)
     # d(root)/dbeta = -x y / root; d(x y)/dbeta = x^2 - y^2
     second = -x - ((x * x - y * y) * root + (x * y) ** 2 / root) / root**2
@@ -106,7 +108,7 @@ class Body:
 
     def steady(self, t: Any) -> tuple[Any, Any]:
         """The steady oscillation and its velocity."""
-        co, si = mp.cos(self.Omega * t), mp.sin(self.Omega * t)
+        co, si = mp.cos_sin(self.Omega * t)
         return self.X * co + self.Y * si, self.Omega * (self.Y * co - self.X * si)
 
     def flow(self, t0: Any, y0: Any, v0: Any, tau: Any) -> tuple[Any, Any]:
@@ -255,16 +257,19 @@ def _release(body: Body, t: Any, hi: Any, within: Any) -> Any:
 
 
 def _root(f: Callable[[Any], tuple[Any, Any]], a: Any, b: Any) -> Any:
-    """Root of f between a and b; f gives its value and its slope (None: bisected to the end)."""
-    sign, (_, slope) = mp.sign(f(a)[0]), f(b)
-    for _ in range(40 if slope is not None else 165):
-        c = (a + b) / 2
-        if mp.sign(f(c)[0]) == sign:
-            a = c
+    """Root of f between a and b; f gives its value and its slope, for Newton's method (None: halved to the end)."""
+    sign, near, x = mp.sign(f(a)[0]), (b - a) * NEAR, (a + b) / 2
+    for _ in range(165):
+        value, slope = f(x)
+        if mp.sign(value) == sign:
+            a = x
         else:
-            b = c
-    x = (a + b) / 2
-    for _ in range(4 if slope is not None else 0):
+            b = x
+        step = value / slope if slope else b - a
+        if slope and abs(step) < near:
+            break
+        x = x - step if a < x - step < b else (a + b) / 2
+    for _ in range(2 if slope else 0):
         value, slope = f(x)
         x -= value / slope
     return x

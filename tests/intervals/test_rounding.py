@@ -1,5 +1,6 @@
 """Arithmetic of bounds: it holds exact results, has no bound where there is none, and is the same compiled or not."""
 
+import functools
 import itertools
 import math
 from fractions import Fraction
@@ -17,6 +18,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:(overflow|invalid value|divide b
 MEMBERS = (0.0, 0.3, 1.0)  # shares of the way from one bound to the other
 
 
+@functools.cache
 def members(a, b):
     """Some numbers of an interval, exact."""
     a, b = max(a, -1e300), min(b, 1e300)
