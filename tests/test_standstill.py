@@ -47,7 +47,8 @@ def as_two(slopes, q, mu):
 @pytest.mark.parametrize(
     ("method", "off"),
     [
-        (EventDriven(), 1e-9), (Located(1e-2, tolerance=1e-5), 1e-4), (Located(1e-2, 4, tolerance=1e-6), 1e-5),
+        (EventDriven(), 1e-9), (Located(1e-2, tolerance=1e-5), 1e-4),
+        pytest.param(Located(1e-2, 4, tolerance=1e-6), 1e-5, marks=pytest.mark.slow),
         (Moreau(1e-2, tolerance=1e-4), 1e-3),
     ],
     ids=["event-driven", "order 2", "order 4", "moreau"],

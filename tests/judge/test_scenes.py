@@ -50,6 +50,7 @@ LONG = {  # of these
     "a heavy body squeezes light ones against a wall",
     "a body that three walls hold on a curved joint",
     "four feet of different restitution",
+    "low hops of a body in a shaken wedge a day before time zero",
 }
 KNOWN = KEPT | LATELY | RECENTLY | JOINTED | LOOSE | OTHER
 NAMES = slow(KNOWN, *LONG)
