@@ -185,7 +185,9 @@ def variables(k: Kernel, f: ast.FunctionDef, owner: str | None) -> dict[str, str
         if known == before:
             break
     for _ in assigned:  # then without those of which not all is known
-        lost = [name for name, kinds in told(k, known, assigned) if known[name] and joined(kinds) != known[name]]
+        lost = [
+            name for name, kinds in told(k, known, assigned) if known[name] and joined(kinds) != known[name]
+        ]
         if not lost:
             break
         known |= dict.fromkeys(lost)
