@@ -10,7 +10,7 @@ from lcpstep.model import UncompiledCallback
 from tests import compiled_helpers
 from tests.compiled_helpers import down
 from tests.falling import falling
-from tests.marks import compiled_only
+from tests.marks import compiled_only, slow
 
 METHODS = [Moreau(1e-2), Located(1e-2), EventDriven()]
 CALLS = []
@@ -123,7 +123,7 @@ HOLES = {
 
 
 @compiled_only
-@pytest.mark.parametrize("name", [*HOLES, "helper"])
+@pytest.mark.parametrize("name", slow([*HOLES, "helper"], longest=["fill_diagonal"]))
 def test_nothing_is_written_into_the_state_through_a_hole(name):
     hole = name if name in HOLES else "ascontiguousarray"
     said = f"through np.{hole} it could write into an array that it may only read"

@@ -17,19 +17,31 @@ NEEDS = {
     "ex35_proof": "flint",
     "ex37_in_another_program": "fmpy",
 }
-SLOW = {  # films, a study, diagrams, and basins
+SLOW = {  # films, a study, diagrams, basins, and what other tests show as well
+    "ex02_cam_detachment",
     "ex03_own_mechanism",
     "ex04_from_a_lagrangian",
     "ex05_kept_and_sent",
     "ex06_cam_film",
-    "ex26_double_pendulum_film",
-    "ex32_work_precision",
+    "ex12_pile_at_rest",
+    "ex13_rocking_block",
+    "ex15_slider_crank",
+    "ex18_chain_at_a_wall",
+    "ex19_grazing",
+    "ex20_ball_on_a_table",
+    "ex23_painleve_rod",
+    "ex25_two_stiffnesses",
+    "ex33_error_bars",
+    "ex34_audit",
     "ex41_chapter_2_flips",
+    "ex42_chapter_3_chaotic_cam",
     "ex43_chapter_4_bifurcation_diagram",
     "ex44_chapter_4_basins",
     "ex45_chapter_5_corner_impact",
     "ex46_chapter_6_border_collisions",
+    "ex47_chapter_7_anti_lock_brake",
 }
+LONGEST = "ex26_double_pendulum_film", "ex32_work_precision"
 LARGEST = 2_000_000  # of a picture or film [bytes]
 
 
@@ -166,7 +178,7 @@ def test_every_example_has_a_number():
     assert len(EXAMPLES) >= 25
 
 
-@pytest.mark.parametrize("name", slow(sorted(EXAMPLES), *SLOW))
+@pytest.mark.parametrize("name", slow(sorted(EXAMPLES), *SLOW, longest=LONGEST))
 def test_an_example_draws_and_its_number_is_right(name, monkeypatch, tmp_path):
     if name in NEEDS:
         pytest.importorskip(NEEDS[name])
@@ -210,7 +222,7 @@ def test_an_example_says_what_it_shows(name):
     "page",
     [
         "README.md",
-        pytest.param("docs/index.md", marks=pytest.mark.slow),
+        pytest.param("docs/index.md", marks=pytest.mark.thorough),
         pytest.param("docs/first-five-minutes.md", marks=pytest.mark.slow),
         "docs/large-systems.md",
         "docs/tutorial.md",

@@ -153,7 +153,7 @@ def said(err, what):
     )
 
 
-@pytest.mark.parametrize("command", shared(LONG, 3))
+@pytest.mark.parametrize("command", shared(LONG, 5))
 def test_every_command_ends_soon_and_says_how_to_go_on(command, tmp_path):
     words = [command, *LONG[command].split()]
     (tmp_path / "study.toml").write_text(STUDY)
@@ -203,10 +203,9 @@ def test_a_second_one_ends_at_once_without_a_traceback(command, between, tmp_pat
     assert not list(tmp_path.rglob("*.partial*"))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("words", SLOW_LOOPS.values(), ids=SLOW_LOOPS)
-def test_no_loop_keeps_python_from_hearing(words, tmp_path):
-    _, err, seconds = interrupted(words.split(), tmp_path, AFTER)
+@pytest.mark.parametrize("loop", shared(SLOW_LOOPS, 2))
+def test_no_loop_keeps_python_from_hearing(loop, tmp_path):
+    _, err, seconds = interrupted(SLOW_LOOPS[loop].split(), tmp_path, AFTER)
     assert seconds < LIMIT
     assert said(err, "kept") == "nothing"
 

@@ -43,16 +43,20 @@ def as_two(slopes, q, mu):
     return Scene(FALLS, q, [0.2, 0.0], (0.0, 6.0), planes)
 
 
-@pytest.mark.parametrize("mu", [None, 0.2])
+METHODS = [
+    (EventDriven(), 1e-9), (Located(1e-2, tolerance=1e-5), 1e-4), (Moreau(1e-2, tolerance=1e-4), 1e-3),
+    (Located(1e-2, 4, tolerance=1e-6), 1e-5),
+]  # fmt: skip
+
+
 @pytest.mark.parametrize(
-    ("method", "off"),
+    ("method", "off", "mu"),
     [
-        (EventDriven(), 1e-9), (Located(1e-2, tolerance=1e-5), 1e-4),
-        pytest.param(Located(1e-2, 4, tolerance=1e-6), 1e-5, marks=pytest.mark.slow),
-        (Moreau(1e-2, tolerance=1e-4), 1e-3),
+        *((*method, None) for method in METHODS),
+        *(pytest.param(*method, 0.2, marks=pytest.mark.slow) for method in METHODS[1:-1]),
+        *(pytest.param(*method, 0.2, marks=pytest.mark.thorough) for method in (METHODS[0], METHODS[-1])),
     ],
-    ids=["event-driven", "order 2", "order 4", "moreau"],
-)  # fmt: skip
+)
 def test_a_valley_given_as_one_gap_ends_a_run_where_two_contacts_would_hold_the_body(method, off, mu):
     """Runs took steps of 1e-12 s at its bottom without end; up to there they are right."""
     m = simulate(as_one([-0.5, 0.5], [-0.3, 0.4], mu), method)
@@ -83,7 +87,10 @@ def test_the_bottom_of_a_round_bowl_is_no_kink():
 
 @pytest.mark.parametrize(
     "method",
-    [pytest.param(Located(1e-2, 4, tolerance=1e-6), marks=pytest.mark.slow), Moreau(1e-2, tolerance=1e-6)],
+    [
+        pytest.param(Located(1e-2, 4, tolerance=1e-6), marks=pytest.mark.thorough),
+        Moreau(1e-2, tolerance=1e-6),
+    ],
 )
 def test_a_force_that_counts_its_calls_ends_a_run_that_it_would_make_endless(method):
     calls = itertools.count()

@@ -178,23 +178,14 @@ class _Followed:
     impacts: int
     method: EventDriven | None
 
-    def phases(self, p: float) -> Phases:
-        """Phase of each followed event, by sequence, kind and number."""
-        found = {}
-        for i, s in enumerate(sequences(self.make(p), self.method)):
+    def places(self, p: float) -> Places:
+        """Phases of the followed events, by sequence, kind and number, and of the corners."""
+        scene, found = self.make(p), {}
+        for i, s in enumerate(sequences(scene, self.method)):
             found[i, "release", 0] = s.release
             found[i, "accumulation", 0] = s.accumulation
             found |= {(i, "impact", j + 1): float(x) for j, x in enumerate(s.impacts[: self.impacts])}
-        return found
-
-    def places(self, p: float) -> Places:
-        """Phases of the followed events and of the corners."""
-        return self.phases(p), self.corners(p)
-
-    def corners(self, p: float) -> Array:
-        """Phases of the corners."""
-        scene = self.make(p)
-        return np.asarray(scene.corners) / scene.period
+        return found, np.asarray(scene.corners) / scene.period
 
     def crossings(self, a: float, b: float, at_a: Places, at_b: Places) -> list[Crossing]:
         """Events that are there at both ends of an interval, on the two sides of a corner."""
@@ -219,10 +210,10 @@ class _Followed:
         from scipy.optimize import brentq
 
         def distance(p: float) -> float:
-            phase = self.phases(p).get(event)
-            if phase is None:
+            phases, corners = self.places(p)
+            if event not in phases:
                 raise LcpStepError("lost")
-            d = _distance(phase, self.corners(p)[c])
+            d = _distance(phases[event], corners[c])
             return abs(d) - AT_CORNER if stays else d
 
         stays = 0.0 in (_off(event, start), _off(event, end))
@@ -238,17 +229,17 @@ class _Followed:
         """Events on a corner where their sequence, which is there at a and not at b, ends to be."""
         found = []
         for i in {event[0] for event in at_a[0]} - {event[0] for event in at_b[0]}:
-            there, gone, last = a, b, at_a[0]
+            there, gone, last = a, b, at_a
             while abs(there - gone) > ROOT * abs(b):
                 p = 0.5 * (there + gone)
-                now = self.phases(p)
-                if (i, "release", 0) in now:
+                now = self.places(p)
+                if (i, "release", 0) in now[0]:
                     there, last = p, now
                 else:
                     gone = p
-            for event in (e for e in last if e[0] == i):
-                for c, corner in enumerate(self.corners(there)):
-                    near = abs(_distance(last[event], corner)) <= REACHED
+            for event in (e for e in last[0] if e[0] == i):
+                for c, corner in enumerate(last[1]):
+                    near = abs(_distance(last[0][event], corner)) <= REACHED
                     if near and event[1] != "release":
                         found.append(Crossing(*event, c, 0.5 * (there + gone)))
         return found

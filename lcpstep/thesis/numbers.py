@@ -85,7 +85,7 @@ def agreement(printed: str, computed: float) -> str:
 
 def numbers() -> list[Number]:
     """All of them, in the order of the chapters."""
-    return [*_chattering(), *_upper(), *_corner(), *_controller()]
+    return [number for part in PARTS for number in part()]
 
 
 def _cam(rpm: float) -> Scene:
@@ -250,3 +250,6 @@ def _controller() -> list[Number]:
         Number(7, "multiplier", "0.0", cycle.multiplier, 9, "saltation matrices; zero by differences too"),
     ]
     return rows
+
+
+PARTS = _chattering, _upper, _corner, _controller

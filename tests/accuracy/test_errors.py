@@ -17,6 +17,7 @@ from lcpstep.accuracy.errors import MEASURES, Difference
 from lcpstep.accuracy.graphs import Graph, hausdorff
 from lcpstep.accuracy.matching import match_impacts
 from lcpstep.trajectory import IMPACT_DTYPE, Kind
+from tests.marks import slow
 
 BALL = scenes.bouncing_ball()
 SPRING = Scene(
@@ -159,7 +160,7 @@ def test_states_of_time_stepping_come_close_in_every_measure():
     ],
     ids=lambda x: getattr(x, "name", None),
 )
-@pytest.mark.parametrize("method", [Moreau, Located])
+@pytest.mark.parametrize("method", slow([Moreau, Located], longest=[Located]))
 def test_a_part_of_a_fine_grid_tells_what_all_of_it_does(scene, h, method, monkeypatch):
     monkeypatch.setattr(errors, "MOST", 10**9)
     run, exact = simulate(scene, method(h)), simulate(scene, EventDriven(1e-13, 1e-13))

@@ -66,8 +66,8 @@ def test_the_time_in_a_held_state_is_an_integral(model):
 @pytest.mark.parametrize(
     "settings",
     [
-        pytest.param({"model": "slip"}, id="slip", marks=pytest.mark.slow),
-        pytest.param({"model": "constant"}, id="constant", marks=pytest.mark.slow),
+        pytest.param({"model": "slip"}, id="slip", marks=pytest.mark.thorough),
+        pytest.param({"model": "constant"}, id="constant", marks=pytest.mark.thorough),
         pytest.param(WET, id="wet", marks=pytest.mark.slow),
     ],
 )
@@ -178,7 +178,7 @@ def test_the_dry_thresholds_lock_the_wheel_on_a_wet_road():
 
 @pytest.mark.slow
 def test_the_command_writes_what_it_prints(capsys, tmp_path):
-    arguments = ["abs", "--grid", "6", "--points", "8", "--out", str(tmp_path), "--json"]
+    arguments = ["abs", "--grid", "4", "--points", "4", "--out", str(tmp_path), "--json"]
     assert main(arguments) == 0
     printed = json.loads(capsys.readouterr().out)
     saved = json.loads((tmp_path / "abs.json").read_text())
@@ -186,7 +186,7 @@ def test_the_command_writes_what_it_prints(capsys, tmp_path):
     assert saved["vanishes_below"] == pytest.approx(saved["peak"]["torque"], abs=1e-9)
     assert sum(saved["basins"]["shares"]["0"].values()) == pytest.approx(1.0)
     assert f"limit cycle of period {saved['cycle']['period']:.12f} s" in _text(saved)
-    assert np.load(tmp_path / "abs-basins.npz")["labels"].shape == (4, 6, 6)
+    assert np.load(tmp_path / "abs-basins.npz")["labels"].shape == (4, 4, 4)
     assert (tmp_path / "abs.png").stat().st_size > 1000
     assert main(arguments) == 2
     assert "exists already" in capsys.readouterr().err

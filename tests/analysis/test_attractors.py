@@ -16,6 +16,7 @@ from lcpstep.analysis.returns import return_time, return_times, survive
 from lcpstep.analysis.starts import outside, random_starts
 from lcpstep.maps import periods
 from tests.analysis.test_maps import table
+from tests.marks import slow
 
 BOX = [[0.0, -60.0], [1.5, 60.0]]
 FIRST_DETACHMENT = 114.979  # rpm
@@ -91,7 +92,7 @@ def test_rounding_does_not_pass_for_an_attractor():
     assert set(names(358.5, 1, transient=600)) <= {"O(3, 8)", "O(1, 2)"}
 
 
-@pytest.mark.parametrize("transient", [5, 20, 100])
+@pytest.mark.parametrize("transient", slow([5, 20, 100], 20, 100))
 def test_a_motion_on_its_way_has_no_name(transient):
     # Rounding closes cycles of 56 periods on the way to O(3, 8); the window is too short to leave one
     scene = cam_follower(rpm=358.5)

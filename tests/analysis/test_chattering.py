@@ -103,8 +103,8 @@ def test_the_speeds_above_are_those_at_which_a_sequence_ends_on_the_corner(meeti
 @pytest.mark.parametrize(
     "width",
     [
-        pytest.param((0.03, 0.02), marks=pytest.mark.slow),
-        pytest.param((1e-3, 2e-3), marks=pytest.mark.thorough),
+        pytest.param((0.03, 0.02), marks=pytest.mark.thorough),
+        pytest.param((1e-3, 2e-3), marks=pytest.mark.slow),
         pytest.param((1e-6, 1e-6), marks=pytest.mark.slow),
     ],
 )

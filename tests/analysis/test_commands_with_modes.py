@@ -27,9 +27,9 @@ BLOCK = ("stick-slip-oscillator", "--set", "amplitude=0.3", "omega=0.9")
              "--keep", 4),
             "32 switches recorded, at most 2 in a period", ["bifurcation.nc", "bifurcation.png"],
         ),
-        (
+        pytest.param(
             ("orbit", *BLOCK, "--parameter", "omega", "--range", 0.85, 1.1, "--draw", "--transient", 60),
-            "flip          at omega = 1.04123526", ["branch.nc", "branch.png", "orbit.png"],
+            "flip          at omega = 1.04123526", ["branch.nc", "branch.png", "orbit.png"], marks=pytest.mark.slow,
         ),
         pytest.param(
             ("basin", *STICKING, "--position", -1, 1, "--velocity", -1, 1, "--grid", 4, 4, "--longest", 30,

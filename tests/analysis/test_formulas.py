@@ -139,6 +139,7 @@ def test_own_matrices_give_the_same_as_the_normal_form(capsys):
         assert own[name] == ready[name]
 
 
+@pytest.mark.slow
 def test_fixed_points_of_piecewise_linear_maps_solve_their_equations():
     random = np.random.default_rng(5)
     for _ in range(20):

@@ -16,7 +16,7 @@ scene = scenes.cam_follower(rpm=137.0, coordinates="absolute")
 x = np.stack([np.linspace(0.5, 1.2, 5), np.linspace(-5.0, 9.0, 5)], axis=1)
 targets = Targets(np.array([[0.5, 1.0], [0.4, 0.0]]), np.array([0.1, 0.3]), np.array([1.0, 10.0]))
 for method, n, tangents, aims in (
-    (EventDriven(), 12, True, None), (EventDriven(), 12, False, targets), (Moreau(2e-3), 3, True, None),
+    (EventDriven(), 6, True, None), (EventDriven(), 6, False, targets), (Moreau(2e-3), 3, True, None),
 ):
     found = periods(scene, method, x, n, drop=n - 2, tangents=tangents, targets=aims, strict=False)
     parts = [np.ascontiguousarray(getattr(found, field.name)).tobytes() for field in fields(found)]

@@ -14,6 +14,7 @@ from lcpstep.analysis.orbits import continue_orbit, moved, periodic_orbit
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.maps import iterate
 from tests.analysis.test_maps import table
+from tests.marks import slow
 
 THESIS_CORNER = (
     673.234445  # rpm at which the impact of O(1, 1) meets the flank-nose corner, to its printed digits
@@ -240,7 +241,7 @@ def test_the_corner_and_the_flip_of_the_single_impact_orbit_are_found():
     assert branch.orbits[-1].name == "O(1, 1)"
 
 
-@pytest.mark.parametrize("end", [0.6, 40.0])  # of the range: what it is wide by has no part in it
+@pytest.mark.parametrize("end", slow([0.6, 40.0], 40.0))  # of the range: what it is wide by has no part in it
 def test_the_branch_without_impacts_of_an_oscillator_ends_where_it_grazes_its_stop(end):
     # Steady oscillation of amplitude A / |1 - w^2 + 2 i z w|, which touches the stop when it is that far
     w, z, stop = 1.3, 0.05, 0.5

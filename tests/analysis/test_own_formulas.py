@@ -10,6 +10,7 @@ from lcpstep.cli.common import DONE, USAGE
 from lcpstep.errors import UnknownName
 from lcpstep.maps.formulas import MAPS, Family, from_file, named
 from tests.commands import run_map
+from tests.marks import slow
 
 # --- maps of one's own
 
@@ -154,7 +155,7 @@ def image(x, p):
 
 
 @pytest.mark.parametrize(("minus", "plus"), [(0.4, -1.6), (0.3, -0.6), (1.6, 0.2), (-1.5, 0.5), (0.1, -2.9)])
-@pytest.mark.parametrize("k", [0.0, 0.2])
+@pytest.mark.parametrize("k", slow([0.0, 0.2], longest=[0.0]))
 def test_the_border_of_ones_own_map_is_found_and_classified(capsys, tmp_path, minus, plus, k):
     file = tmp_path / "bent.py"
     file.write_text(BENT % {"minus": minus, "plus": plus, "k": k})

@@ -174,6 +174,7 @@ def test_an_orbit_of_two_periods_is_proved_and_one_that_repeats_earlier_is_not(c
         prove(twice)
 
 
+@pytest.mark.slow
 def test_the_orbit_of_eight_impacts_at_358_rpm_is_proved():
     orbit = attracting(scenes.cam_follower(rpm=358.0), 3)
     proof = prove(orbit)
@@ -193,6 +194,7 @@ def turning(omega, lead, turns=1, force=None):
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_symmetric_cam_that_turns_back_gives_the_same_orbit_and_so_does_a_longer_period():
     w = 24.0 * math.pi
     proofs = [prove(attracting(turning(*case))) for case in ((w, 0.3), (-w, 0.3), (-w, -2.0), (w, 0.3, 2))]

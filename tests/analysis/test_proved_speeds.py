@@ -105,6 +105,7 @@ def masses(omega):
     return replace(scene, system=replace(scene.system, force=force), period=2.0 * math.pi / omega)
 
 
+@pytest.mark.slow
 def test_the_flip_of_two_masses_is_where_a_multiplier_passes_minus_one():
     orbit = attracting(masses(1.95))
     flip = float(ball(prove_speed(orbit, "flip").omega)[0])

@@ -18,6 +18,7 @@ from lcpstep.analysis.bifurcation import bifurcation
 from lcpstep.dataset import save
 from lcpstep.errors import SweepStopped
 from lcpstep.sweep import MANIFEST, sweep
+from tests.marks import slow
 from tests.processes import ROOT
 
 STUDY = {"drop": 60, "keep": 5, "most": 4}
@@ -109,7 +110,9 @@ def test_a_cluster_of_processes_retries_what_a_killed_worker_was_doing(tmp_path)
     assert there.identical(bifurcation(cam_follower, "rpm", SPEEDS[:16], **STUDY))
 
 
-@pytest.mark.parametrize("start", ["fixed", "forward", "backward", "random"])
+@pytest.mark.parametrize(
+    "start", slow(["fixed", "forward", "backward", "random"], longest=["fixed", "backward"])
+)
 def test_the_number_of_threads_changes_nothing(start):
     box = [[0.0, -5.0], [1.0, 5.0]] if start == "random" else None
     runs = [

@@ -15,6 +15,7 @@ from lcpstep.analysis.orbits import continue_orbit, periodic_orbit
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.cli import main
 from lcpstep.plot.orbits import stretches
+from tests.marks import slow
 
 CASES = [
     {},
@@ -25,7 +26,7 @@ CASES = [
 
 
 @pytest.mark.parametrize("values", CASES)
-@pytest.mark.parametrize("phase", [0.0, 0.37])
+@pytest.mark.parametrize("phase", slow([0.0, 0.37], longest=[0.0]))
 def test_derivatives_of_periods_are_those_of_the_map(values, phase):
     P = PeriodMap(cam_follower(rpm=660.0, **values), EventDriven(), phase)
     # At a phase of its own the obstacle may lie above the start of the scene

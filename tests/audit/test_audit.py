@@ -11,6 +11,7 @@ from lagrangian import Contacts, Scene, System, scenes
 from lcpstep import EventDriven, Located, simulate
 from lcpstep.audit import audit
 from lcpstep.errors import LcpStepError
+from tests.marks import slow
 from tests.turns.test_burrs import oscillator
 
 NOT_LONG = [
@@ -150,7 +151,7 @@ def points(t, q, v, p, out):
 
 @pytest.mark.filterwarnings("ignore::lcpstep.turns.FastTurn")
 @pytest.mark.parametrize("method", [EventDriven(), Located(1e-2), Located(1e-2, order=4)])
-@pytest.mark.parametrize("height", [0.0, 2.5])
+@pytest.mark.parametrize("height", slow([0.0, 2.5], 2.5))
 def test_a_table_of_points_is_sampled_and_said(method, height):
     heights = 0.02 * np.sin(np.linspace(0.0, 20.0, 2001))
     heights[1003] = height

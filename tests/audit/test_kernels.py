@@ -17,6 +17,7 @@ from lcpstep.audit.obstacle import Table
 from lcpstep.audit.pieces import Pieces
 from lcpstep.audit.polynomials import basis, through
 from lcpstep.kernels.function import Function
+from tests.marks import slow
 from tests.turns.test_burrs import oscillator
 from tests.uncompiled import both_ways
 
@@ -233,7 +234,7 @@ def saw(t, q, v, p, out):
     out[0, 2] = 0.0
 
 
-@pytest.mark.parametrize("declared", [True, False])
+@pytest.mark.parametrize("declared", slow([True, False], True))
 @pytest.mark.parametrize("method", [EventDriven(), Located(1e-3)], ids=["event-driven", "order 2"])
 def test_pieces_above_a_table_with_true_corners_are_certified_only_where_they_are_open(declared, method):
     for seed in range(4):

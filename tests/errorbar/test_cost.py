@@ -44,7 +44,10 @@ DEAR = (
 )
 
 
-@pytest.mark.parametrize("name", slow(CATALOGUE, "stack", "column"))
+LONG = "elastic-chain", "block-on-feet", "falling-gas", "elastic-ball", "elastic-gas"
+
+
+@pytest.mark.parametrize("name", slow(CATALOGUE, *LONG, longest=["stack", "column"]))
 def test_states_between_steps_change_nothing_of_a_run(name):
     scene = CATALOGUE[name].make()
     if not isinstance(scene, Scene):

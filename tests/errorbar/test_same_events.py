@@ -10,6 +10,7 @@ from lcpstep import EventDriven, Located, simulate
 from lcpstep.errors import LcpStepError
 from lcpstep.simulation import fitted
 from lcpstep.trajectory import Kind
+from tests.marks import shared
 
 FRICTION = {name for name, entry in CATALOGUE.items() if getattr(entry.make().contacts, "friction", None)}
 MOVED = {"jumping-table"}  # its table moves without a period: later is another scene
@@ -43,10 +44,9 @@ SLOW += [(name, Located(1e-2, tolerance=1e-4)) for name in CATALOGUE if name not
 SLOW += [(name, Located(1e-3)) for name in sorted(FRICTION)]
 
 
-@pytest.mark.parametrize(
-    ("name", "method"), [*CASES, *(pytest.param(*x, marks=pytest.mark.slow) for x in SLOW)], ids=str
-)
-def test_impacts_do_not_depend_on_how_the_question_is_put_as_long_as_the_bar_holds(name, method):
+@pytest.mark.parametrize("case", [*CASES, *shared(SLOW, 3)], ids=lambda case: "-".join(map(str, case)))
+def test_impacts_do_not_depend_on_how_the_question_is_put_as_long_as_the_bar_holds(case):
+    name, method = case
     scene = CATALOGUE[name].make()
     method = fitted(method, scene.t_span)
     try:

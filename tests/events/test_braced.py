@@ -8,6 +8,7 @@ import pytest
 
 from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene
 from lcpstep import EventDriven, Located, Status, simulate
+from tests.marks import seeds
 
 
 def drawn(seed, n_j, n):
@@ -28,10 +29,11 @@ def drawn(seed, n_j, n):
     )
 
 
+@pytest.mark.parametrize("numbers", seeds(150, 50))
 @pytest.mark.parametrize(("n_j", "n"), [(0, 2), (1, 3), (2, 4)])
 @pytest.mark.parametrize("method", [EventDriven(), Located(1e-2), Located(1e-2, order=4)], ids=repr)
-def test_walls_press_and_rub_as_they_can(method, n_j, n):
-    for seed in range(150):
+def test_walls_press_and_rub_as_they_can(method, n_j, n, numbers):
+    for seed in numbers:
         scene = drawn(seed, n_j, n)
         m = simulate(scene, method)
         assert m.status == Status.DONE, (seed, m.message)

@@ -12,6 +12,7 @@ from lagrangian.scenes.rough_contacts import critical_friction
 from lcpstep import EventDriven, Kind, Moreau, Status, continued, simulate
 from lcpstep import energy as energy_balance
 from tests.events.rough import block, energy, rod, rod_row, times, weight
+from tests.marks import shared
 from tests.uncompiled import both_ways
 
 
@@ -36,8 +37,7 @@ def test_energy_never_grows_impulses_lie_in_the_cone_and_nothing_is_passed(seed)
     assert np.max(run.penetration) < 1e-8
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", shared(range(12), 3))
 def test_moreaus_scheme_comes_to_the_same_motion(seed):
     scene = block(seed)
     exact, coarse, fine = at_end(scene, EventDriven(1e-10, 1e-10), Moreau(2e-4), Moreau(2e-6))

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, scenes
 from lagrangian.scenes.kane_pendulum import kinetic_energy
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, energy, simulate
+from tests.marks import slow
 from tests.uncompiled import both_ways
 
 G0 = 9.81
@@ -60,7 +61,7 @@ def mobility(scene):
     return D, D @ np.linalg.solve(scene.system.M, D.T)
 
 
-@pytest.mark.parametrize("seed", range(25))
+@pytest.mark.parametrize("seed", slow(range(25), longest=range(10, 25)))
 def test_an_impact_by_small_steps_of_its_impulse_ends_the_same(seed):
     scene = drawn(seed)
     D, W = mobility(scene)
@@ -188,7 +189,7 @@ def test_located_steps_have_the_same_impacts(law, order):
     assert np.max(np.abs(steps.q[-1] - exact.q[-1])) < 1e-9
 
 
-@pytest.mark.parametrize("r", [0.0, 0.5])
+@pytest.mark.parametrize("r", slow([0.0, 0.5], 0.5))
 def test_moreaus_steps_come_to_the_same_impacts_in_turn(r):
     scene = slider("stronge", r)
     exact = simulate(scene, EventDriven(1e-11, 1e-11), keep=[0.4])

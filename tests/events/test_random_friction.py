@@ -12,7 +12,7 @@ from tests.random_friction import answers, close_impacts, complaints, draw, left
 PER_TEST = 20
 
 
-@pytest.mark.parametrize("first", shared(range(1000, 1200, PER_TEST), 5))
+@pytest.mark.parametrize("first", shared(range(1000, 1200, PER_TEST), 10))
 @pytest.mark.parametrize("law", ["moreau", "stronge"])
 def test_runs_end_create_no_energy_and_are_those_of_small_steps(first, law):
     for seed in range(first, first + PER_TEST):

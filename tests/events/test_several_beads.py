@@ -24,7 +24,7 @@ def kinetic(m):
     [
         pytest.param(12, 2000.0, 100_000, marks=pytest.mark.slow),
         (100, 2.0, 6_000),
-        pytest.param(100, 20.0, 65_000, marks=pytest.mark.slow),
+        pytest.param(100, 20.0, 65_000, marks=pytest.mark.thorough),
     ],
 )
 def test_an_elastic_gas_is_free_flight_sorted(n, t_end, impacts):

@@ -61,7 +61,7 @@ def test_the_double_pendulum_is_that_of_the_series():
     np.testing.assert_allclose(np.array(states, dtype=float), REFERENCE_STATES[:2], rtol=1e-14)
 
 
-@pytest.mark.slow
+@pytest.mark.thorough
 def test_every_number_of_the_double_pendulum_is_that_of_the_series():
     impacts, states = reference([str(t) for t in REFERENCE_TIMES])
     np.testing.assert_allclose(np.array(impacts, dtype=float), REFERENCE_IMPACTS, rtol=1e-15)
@@ -157,6 +157,7 @@ def test_the_chain_keeps_its_energy_after_the_impact_and_leaves_where_the_force_
     assert 0.0 <= force[0] < 1e-6
 
 
+@pytest.mark.slow
 def test_a_fine_chain_presses_like_a_bar():
     scene = scenes.elastic_chain(n=200)
     force = scene.exact.force(np.linspace(0.3, 1.9, 400))

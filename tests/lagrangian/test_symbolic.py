@@ -30,6 +30,7 @@ from tests.lagrangian.mechanisms import (
     sympy,
     tip_and_lagrangian,
 )
+from tests.marks import slow
 
 STEP = 1e-2  # of eighth-order differences: truncation 1e-16, rounding 1e-14
 EXACT = EventDriven(rtol=1e-12, atol=1e-12)
@@ -135,7 +136,7 @@ def test_gaps_that_do_not_name_the_time_have_no_time_derivative():
     assert shaken_pendulum().contacts.gap_t is not None
 
 
-@pytest.mark.parametrize("mechanism", MECHANISMS)
+@pytest.mark.parametrize("mechanism", slow(MECHANISMS, MECHANISMS[-1], longest=MECHANISMS[2:-1]))
 def test_compiled_callbacks_give_what_plain_ones_give(mechanism):
     system, contacts, p = mechanism().system, mechanism().contacts, values(mechanism())
     random, n, n_c = np.random.default_rng(1), system.n_q, contacts.n_c

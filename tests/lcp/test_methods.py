@@ -162,6 +162,7 @@ def test_gauss_seidel_is_approximate_and_says_so():
         solve_lcp([[1.0, 0], [0, -1]], [1.0, 1], "pgs")
 
 
+@pytest.mark.slow
 def test_automatic_choice_falls_back_to_pivoting():
     """A bimatrix game is not monotone, so Newton's method does not end; its neighbours make it large."""
     rng, k, n = np.random.default_rng(8), 30, 500

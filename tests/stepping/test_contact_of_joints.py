@@ -10,6 +10,7 @@ from scipy.linalg import null_space
 
 from lagrangian import LinearContacts, LinearJoints, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
+from tests.marks import seeds
 
 METHODS = [EventDriven(), Located(1e-2), Located(1e-2, order=4), Located(1e-2, tolerance=1e-6), Moreau(1e-2)]
 
@@ -63,9 +64,10 @@ def test_it_changes_nothing(method, kind, resting):
 
 
 @pytest.mark.usefixtures("sparse_steps")
+@pytest.mark.parametrize("numbers", seeds(8, 3))
 @pytest.mark.parametrize("resting", [True, False])
-def test_nor_in_sparse_steps(resting):
-    for seed in range(8):
+def test_nor_in_sparse_steps(resting, numbers):
+    for seed in numbers:
         beside, alone = (simulate(s, Moreau(1e-2)) for s in drawn(seed, resting, sparse.csr_array))
         assert beside.status == alone.status == Status.DONE, (seed, beside.message)
         assert np.max(np.abs(beside.q[-1] - alone.q[-1])) < 1e-8, seed

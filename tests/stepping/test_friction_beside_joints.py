@@ -10,6 +10,7 @@ from scipy.linalg import null_space
 
 from lagrangian import Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, Scene
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
+from tests.marks import seeds
 
 METHODS = [
     EventDriven(),
@@ -58,10 +59,11 @@ def drawn(seed, mu_own, made=np.asarray):
     return *scenes, place
 
 
+@pytest.mark.parametrize("numbers", seeds(40, 15))
 @pytest.mark.parametrize("mu_own", [0.0, 0.6])
 @pytest.mark.parametrize("method", METHODS, ids=repr)
-def test_a_contact_of_the_joints_changes_nothing(method, mu_own):
-    for seed in range(40):
+def test_a_contact_of_the_joints_changes_nothing(method, mu_own, numbers):
+    for seed in numbers:
         *scenes, own = drawn(seed, mu_own)
         beside, alone = (simulate(scene, method) for scene in scenes)
         assert beside.status == alone.status == Status.DONE, (seed, beside.message)
@@ -71,10 +73,10 @@ def test_a_contact_of_the_joints_changes_nothing(method, mu_own):
         assert not np.any(beside.friction_impulse[:, own]), seed
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("sparse_steps")
-def test_nor_in_sparse_steps():
-    for seed in range(20):
+@pytest.mark.parametrize("numbers", seeds(20, 8, pytest.mark.slow))
+def test_nor_in_sparse_steps(numbers):
+    for seed in numbers:
         *scenes, _ = drawn(seed, 0.6, sparse.csr_array)
         beside, alone = (simulate(scene, Moreau(1e-2)) for scene in scenes)
         assert beside.status == alone.status == Status.DONE, (seed, beside.message)

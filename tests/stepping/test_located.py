@@ -9,6 +9,7 @@ import pytest
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Kind, Located, Moreau, simulate
 from tests.known import SPREAD, ball_height
+from tests.marks import slow
 from tests.models import ball_on_table, bowl_scene, pendulum
 from tests.stepping.test_order import slope
 
@@ -68,7 +69,7 @@ ORDERS = [
     ),
     pytest.param(scenes.cam_follower(t_end=0.35), 400, id="cam"),
     pytest.param(scenes.cam_follower(t_end=0.35, coordinates="absolute"), 100, id="moving cam"),
-    pytest.param(double_pendulum(3.0), 300, id="double pendulum"),
+    pytest.param(double_pendulum(3.0), 300, id="double pendulum", marks=pytest.mark.slow),
     pytest.param(pendulum(1.0, 0.5, 10.0), 100, id="pendulum"),
     pytest.param(bowl_scene([0.5, -0.2], [0.0, 0.0], 2.0), 100, id="bowl"),
 ]  # fmt: skip
@@ -153,7 +154,7 @@ def test_an_elastic_ball_keeps_energy_and_phase():
 
 
 @pytest.mark.parametrize("order", [2, 4, "exact"])
-@pytest.mark.parametrize("h", [0.05, 0.0123])
+@pytest.mark.parametrize("h", slow([0.05, 0.0123], longest=[0.0123]))
 def test_elastic_balls_are_in_place_after_ten_thousand_bounces(order, h):
     # two of them side by side, so that impacts of many bodies are taken in turn where order is 2
     heights, bounces = np.array([1.0, 0.37]), 10_000

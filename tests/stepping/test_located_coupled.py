@@ -8,7 +8,7 @@ import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, Moreau, simulate
-from tests.marks import shared
+from tests.marks import seeds, shared
 from tests.stepping import coupled
 
 ORDERS = [2, 4, "exact"]
@@ -101,10 +101,10 @@ def test_systems_of_three_coordinates_and_three_contacts_move_as_event_by_event(
         check_cluster(k, [0.0, 0.4][k % 2])
 
 
-@pytest.mark.slow
+@pytest.mark.parametrize("numbers", seeds(260, 100, pytest.mark.slow))
 @pytest.mark.parametrize("restitution", [0.0, 0.4])
-def test_many_systems_of_three_coordinates_and_three_contacts_move_as_event_by_event(restitution):
-    for k in range(10, 260):
+def test_many_systems_of_three_coordinates_and_three_contacts_move_as_event_by_event(restitution, numbers):
+    for k in numbers:
         check_cluster(k, restitution)
 
 
@@ -113,9 +113,10 @@ def test_contact_forces_that_begin_at_zero_decide_once():
         check_unloaded(k, [0.0, 0.5][k % 2])
 
 
+@pytest.mark.parametrize("numbers", seeds(150, 40))
 @pytest.mark.parametrize("restitution", shared([0.5, 0.0], 2))
-def test_contact_forces_that_begin_at_zero_decide_once_in_many_systems(restitution):
-    for k in range(12, 150):
+def test_contact_forces_that_begin_at_zero_decide_once_in_many_systems(restitution, numbers):
+    for k in numbers:
         check_unloaded(k, restitution)
 
 

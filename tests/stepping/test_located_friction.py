@@ -195,6 +195,7 @@ def test_a_run_with_friction_goes_on_from_its_end():
     assert np.max(np.abs(second.q[-1] - whole.q[-1])) < 1e-10
 
 
+@pytest.mark.slow
 def test_the_energy_that_friction_takes_never_comes_back():
     for scene in (scenes.sliding_block(), scenes.slope_landing(), scenes.slider_crank()):
         E = energy_balance(simulate(scene, Located(1e-4, order=4)))

@@ -99,7 +99,8 @@ def test_impacts_reversals_sticking_and_release_cost_no_order(make, order):
 
 
 @pytest.mark.parametrize(
-    ("order", "levels"), [(2, (300, 3000, 30_000, 300_000)), (4, (100, 300, 1000, 3000))]
+    ("order", "levels"),
+    [pytest.param(2, (300, 3000, 30_000, 300_000), marks=pytest.mark.slow), (4, (100, 300, 1000, 3000))],
 )
 def test_a_coefficient_that_depends_on_the_sliding_velocity_costs_none_either(order, levels):
     assert fitted_order(weakening(), order, levels) > {2: 1.9, 4: 3.8}[order]

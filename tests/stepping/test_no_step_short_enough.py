@@ -9,6 +9,7 @@ import pytest
 from benchmarks.judge.describe import Description
 from lagrangian import LinearContacts, Scene, System
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
+from tests.marks import slow
 
 # Four coordinates between four planes in a shaking frame, in units in which a gap's speed of 1.4e-5 makes velocities
 # jump by 5e-4
@@ -56,7 +57,7 @@ CARRIED = Description(
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize("tolerance", slow([1e-3, 1e-4, 1e-6], 1e-3))
 def test_an_error_that_was_accepted_is_not_counted_again_in_the_next_step(tolerance):
     """The impact is late by what the tolerance allows; the gap beside it is twelve times as steep as the wall's."""
     for end in np.arange(1.5, 3.0, 0.05):

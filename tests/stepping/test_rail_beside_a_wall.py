@@ -11,6 +11,7 @@ import pytest
 
 from lagrangian import LinearContacts, LinearJoints, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
+from tests.marks import slow
 
 SLOPES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8]  # of the flat wall on the rail; at 1e-11 it counts as the rail
 
@@ -51,7 +52,7 @@ def off(scene, along, mass, force, sides, slope, m):
     return np.max(np.abs(m.q @ along - exact)) / ((1e-12 + 1e-15 / slope) * 0.5 * abs(force) / mass)
 
 
-@pytest.mark.parametrize("slope", SLOPES)
+@pytest.mark.parametrize("slope", slow(SLOPES, longest=SLOPES[::2]))
 @pytest.mark.parametrize(
     ("method", "general"),
     [
@@ -69,7 +70,7 @@ def test_a_wall_that_is_nearly_the_rail_s_own_holds_the_point_or_lets_it_go(slop
         assert off(*drawn_so, slope, m) <= 1.0, seed
 
 
-@pytest.mark.parametrize("slope", SLOPES)
+@pytest.mark.parametrize("slope", slow(SLOPES, longest=SLOPES[1::2]))
 @pytest.mark.parametrize("general", [False, True])
 def test_where_rounding_leaves_nothing_of_the_wall_a_run_says_so(slope, general):
     """Steps of one size put positions back onto both rows."""

@@ -8,6 +8,7 @@ from scipy import sparse
 
 from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep import EventDriven, LcpStepError, Moreau, SimulationError, simulate
+from tests.marks import slow
 
 pytestmark = pytest.mark.usefixtures("sparse_steps")
 
@@ -77,7 +78,7 @@ SAME = {
 
 
 @pytest.mark.parametrize("theta", [0.5, 1.0])
-@pytest.mark.parametrize("name", SAME)
+@pytest.mark.parametrize("name", slow(SAME, "any graph, 40"))
 def test_the_sparse_run_is_the_dense_run(name, theta):
     scene = SAME[name]
     a, b = (simulate(x, Moreau(1.7e-3, theta)) for x in (scene, made_dense(scene)))
@@ -115,7 +116,7 @@ def test_a_column_of_a_thousand_carries_the_weight_above_each_contact():
     np.testing.assert_allclose(m.impulse[1:] / h, np.tile(9.81 * np.arange(n, 0, -1), (10, 1)), rtol=1e-12)
 
 
-@pytest.mark.parametrize("theta", [0.5, 1.0])
+@pytest.mark.parametrize("theta", slow([0.5, 1.0], longest=[1.0]))
 def test_what_rests_stays_exactly_where_it_is(theta):
     m = simulate(column(12, r=0.5, t_end=2.0), Moreau(1e-3, theta), keep=100)
     assert m.counts.steps == 2000  # each of which begins as the one before

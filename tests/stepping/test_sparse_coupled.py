@@ -87,15 +87,16 @@ SAME = {
 
 
 LONG = (
-    "chain of 40",
-    "chain of 20, smooth",
     "chain of 5",
     "chain of 5, thrown up",
     "chain, Stribeck",
+    "what sticks has more, slides without",
+    "masses on swaying belts",
+    "masses, Stribeck and Newton",
 )  # of these
 
 
-@pytest.mark.parametrize("name", slow(SAME, *LONG))
+@pytest.mark.parametrize("name", slow(SAME, *LONG, longest=["chain of 40", "chain of 20, smooth"]))
 def test_the_sparse_run_is_the_dense_run(name):
     scene, theta = SAME[name]
     a, b = (simulate(x, Moreau(2e-3, theta)) for x in (scene, made_dense(scene)))
@@ -154,9 +155,8 @@ def test_impulses_that_are_unique_are_those_of_the_dense_run():
     np.testing.assert_allclose(a.friction_impulse, b.friction_impulse, rtol=0, atol=1e-9)
 
 
-@pytest.mark.parametrize(
-    "restitution", [pytest.param(0.0, marks=pytest.mark.thorough), pytest.param(0.4, marks=pytest.mark.slow)]
-)
+@pytest.mark.thorough
+@pytest.mark.parametrize("restitution", [0.0, 0.4])
 def test_energy_is_lost_and_never_created(restitution):
     chain = scenes.hinged_chain(n=30, restitution=restitution, t_end=0.25)
     run = simulate(chain, Moreau(5e-4))
@@ -181,11 +181,11 @@ def test_friction_stays_within_its_cone_and_a_flat_chain_comes_to_exact_rest():
 @pytest.mark.slow
 def test_a_free_chain_keeps_its_momentum_and_its_links_their_lengths_to_order_two():
     drift = []
-    for h in (2e-3, 1e-3):
-        run = simulate(scenes.hinged_chain(n=200, height=5.0, t_end=0.2), Moreau(h))
+    for h in (4e-3, 2e-3):
+        run = simulate(scenes.hinged_chain(n=100, height=5.0, t_end=0.2), Moreau(h))
         P = run.scene.system.M @ run.v[-1]
-        assert P[::2].sum() == pytest.approx(200 * 0.5, rel=1e-12)
-        assert P[1::2].sum() == pytest.approx(-200 * 9.81 * 0.2, rel=1e-12)
+        assert P[::2].sum() == pytest.approx(100 * 0.5, rel=1e-12)
+        assert P[1::2].sum() == pytest.approx(-100 * 9.81 * 0.2, rel=1e-12)
         drift.append(np.max(run.joint_drift))
     assert max(drift) < 1e-12  # it falls without turning
 

@@ -7,6 +7,7 @@ from lagrangian import scenes
 from lcpstep import Moreau, model, room, simulate
 from lcpstep.kernels import looks, outrun, record, states, surplus, turned
 from lcpstep.stepping import moreau_run
+from tests.marks import slow
 from tests.uncompiled import kernels
 
 STEPS = 40
@@ -42,7 +43,7 @@ def uncompiled(monkeypatch):
     return start
 
 
-@pytest.mark.parametrize("keep", [1, 7, "times", "impacts"])
+@pytest.mark.parametrize("keep", slow([1, 7, "times", "impacts"], longest=[7, "impacts"]))
 @pytest.mark.parametrize(
     ("name", "options"),
     [

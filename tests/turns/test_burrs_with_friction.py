@@ -62,7 +62,7 @@ def carried(speed, length):
 
 
 @pytest.mark.parametrize("motion", [bump, bell])
-@pytest.mark.parametrize("width", slow([1e-1, 1e-2, 1e-3, 1e-4], 1e-2, 1e-4))
+@pytest.mark.parametrize("width", slow([1e-1, 1e-2, 1e-3, 1e-4], 1e-4, longest=[1e-1, 1e-2]))
 def test_no_burr_of_a_table_is_flown_through(motion, width):
     rng = np.random.default_rng(int(1e4 * width))
     for k in range(9):
@@ -98,7 +98,7 @@ def running(t, q, v, p, out):
     out[0] = -(p[3] + math.sin(p[4] * t) + (p[0] * (1.0 - s * s) ** 3 if abs(s) < 1.0 else 0.0))
 
 
-@pytest.mark.parametrize("length", [1e-2, 1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("length", slow([1e-2, 1e-3, 1e-4, 1e-5], longest=[1e-3, 1e-4]))
 @pytest.mark.parametrize("sway", [0.0, 0.3])
 def test_a_jerk_of_a_belt_that_runs_is_seen_however_small_beside_its_speed(length, sway):
     p = [0.05, length, 4.7137, 1.0, sway]
