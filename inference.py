@@ -34,7 +34,8 @@ def infer(k: Kernel, known: dict[str, Type], x: ast.expr) -> Type:
     of = functools.partial(infer, k, known)
     match x:
         case ast.Constant(value):
-            return {bool: "bint", int: "Py_ssize_t", float: "double"}.get(type(value))
+            kinds: dict[type, str] = {bool: "bint", int: "Py_ssize_t", float: "double"}
+            return kinds.get(type(value))
         case ast.Name(name):
             return known.get(name) or constant_type(k, name)
         case ast.UnaryOp(op=ast.Not()):

@@ -27,7 +27,7 @@ LAST = 60  # lines of pip's that are shown where it fails
 OWN_INDEX = re.compile(r"\.(index-url|no-index|proxy)=")  # in what pip says of its configuration
 MADE_BY = "setup.py", "declarations.py", "inference.py", "kernel_sources.py", "ready.py", "ready_words.py"
 BUILD = "pyproject.toml", *MADE_BY
-BESIDE = (["ruff", "check", "."], ["ruff", "format", "--check", "."], ["mypy"], ["lint-imports"])
+BESIDE = (["ruff", "check", "."], ["ruff", "format", "--check", "."], ["pyrefly", "check"], ["lint-imports"])
 
 
 def main(arguments: list[str]) -> int:

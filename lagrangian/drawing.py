@@ -101,7 +101,7 @@ def places(shape: Shape, where: str = "") -> Array:
     try:
         result = np.array(CORNERS[type(shape)](shape), dtype=float)
     except (TypeError, ValueError):
-        result = np.zeros(0)
+        result = np.zeros((0, 0))
     sound = result.ndim == 2 and result.shape[1] == 2 and bool(np.all(np.isfinite(result)))
     if isinstance(shape, Circle):
         sound = (

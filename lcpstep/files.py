@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import uuid
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -23,7 +23,7 @@ def file_path(path: object) -> Path:
 
 
 @contextmanager
-def replacing(file: Path | str) -> Iterator[Path]:
+def replacing(file: Path | str) -> Generator[Path, None, None]:
     """A path beside `file` to write to, with the same ending; it takes the place of `file` at the end.
 
     Until then, and for good where anything fails, `file` is what it was: missing, or the old one. A link stays a link
@@ -51,7 +51,7 @@ def replacing(file: Path | str) -> Iterator[Path]:
 
 
 @contextmanager
-def naming(file: Path | str) -> Iterator[None]:
+def naming(file: Path | str) -> Generator[None, None, None]:
     """An OSError of a file that grows as results come in is a NotWritten that names it; what it has is kept."""
     try:
         yield

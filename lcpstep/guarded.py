@@ -123,7 +123,7 @@ class CalleeCompiler(CompilerBase):
     """Compiler of functions that callbacks call."""
 
     checks_indices = True  # numba's own do not
-    lowering = LowerChecked
+    lowering: type[NativeLowering] = LowerChecked
 
     def define_pipelines(self) -> list[Any]:
         """Numba's pipeline but for the step of lowering, and a look at what is written into and what is called."""

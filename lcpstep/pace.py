@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TypeVar
 
@@ -72,7 +72,7 @@ def until_given_up(event: threading.Event, work: Callable[..., T], *arguments: o
 
 
 @contextmanager
-def telling(told: Told) -> Iterator[None]:
+def telling(told: Told) -> Generator[None, None, None]:
     """Call `told(done, total)` as the loops of this thread go on."""
     before = getattr(_thread, "told", None)
     _thread.told = told

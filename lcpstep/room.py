@@ -48,7 +48,7 @@ def no_room(run: Trajectory) -> str:
         g = gaps_at(m, run.t[k], np.ascontiguousarray(run.q[k]))
     cause()
     forget()
-    seen = [run.scene.q0, *run.q[k]]  # what is kept may be but a rest
+    seen = np.array([run.scene.q0, *run.q[k]])  # what is kept may be but a rest
     reach = float(np.linalg.norm(np.ptp(seen, axis=0)))
     lowest = g.min(axis=1)
     for i in [i for i in np.argsort(lowest)[:CLIMBS] if lowest[i] < -SHALLOW * reach]:

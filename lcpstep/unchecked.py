@@ -40,7 +40,7 @@ class RefuseUnchecked(AnalysisPass):
                 if what:
                     raise errors.NumbaTypeError(f"numba does not check the indices of {what}", loc=assign.loc)
             for call in block.find_exprs(op="call"):
-                key = getattr(state.typemap[call.func.name], "typing_key", None)
+                key: Any = getattr(state.typemap[call.func.name], "typing_key", None)
                 integers = all(isinstance(kind, types.Integer) for kind in state.calltypes[call].args)
                 if key in (divmod, pow) and integers:
                     raise errors.NumbaTypeError(

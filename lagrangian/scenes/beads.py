@@ -215,7 +215,7 @@ def sequence(q0: Array, v0: Array, restitution: float) -> Callable[[Array], tupl
             u[i + 1] -= p
         u[i] *= -r
         if np.max(np.abs(u)) <= 1e-17 * scale:
-            u, v = np.zeros(n - 1), np.full(n, np.mean(v0))
+            u, v = np.zeros(n - 1), np.full(n, float(np.mean(v0)))
         pieces.append((t, q, v))
     starts = np.array([t for t, _, _ in pieces])
 

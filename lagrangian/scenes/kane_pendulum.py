@@ -117,7 +117,7 @@ def after_impact(scene: Scene) -> Array:
             found.append(p)
     if len(found) != 1:
         raise ValueError(f"mu: the law of impact has {len(found)} solutions here")
-    return np.asarray(v + np.linalg.solve(M, D.T @ found[0]))
+    return np.asarray(v + np.linalg.solve(M, D.T @ found[0]), dtype=float)
 
 
 def energy_change(scene: Scene) -> float:

@@ -66,10 +66,8 @@ class Mechanism(Pickled):
         ------
         ValueError   a parameter is unknown, or `Scene` refuses an argument
         """
-        options = {"name": self.name} | options
-        return Scene(
-            self.system, q0, v0, t_span, self.contacts, parameters=self._values(parameters), **options
-        )
+        named: dict[str, Any] = {"name": self.name} | options
+        return Scene(self.system, q0, v0, t_span, self.contacts, parameters=self._values(parameters), **named)
 
     def energy(
         self, t: ArrayLike, q: ArrayLike, v: ArrayLike, parameters: Mapping[Any, float] | None = None

@@ -233,7 +233,7 @@ def checksum(stored: dict[str, Any]) -> str:
 def _level(stored: dict[str, Any]) -> Level:
     """A level from JSON, where null stands for what is not finite."""
     numbers = ("value", "seconds", "steps", "lcp_calls", "force_evaluations")
-    nan = {k: math.nan for k in numbers if stored[k] is None}
+    nan: dict[str, Any] = {k: math.nan for k in numbers if stored[k] is None}
     errors = {m: math.inf if e is None else e for m, e in stored["errors"].items()}
     scatter = {m: tuple(math.inf if e is None else e for e in pair) for m, pair in stored["scatter"].items()}
     return Level(**stored | nan | {"errors": errors, "scatter": scatter, "limited": tuple(stored["limited"])})

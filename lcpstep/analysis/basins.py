@@ -215,7 +215,7 @@ class _Study:
             strict=strict,
         )  # fmt: skip
 
-    def label(self, found: Any) -> Ints:
+    def label(self, found: Any) -> NDArray[np.int16]:
         """Labels of runs."""
         owner = np.append(self.targets[1], UNKNOWN)
         return np.where(found.status == INSIDE, OBSTACLE, owner[found.reached]).astype(np.int16)

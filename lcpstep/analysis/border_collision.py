@@ -165,7 +165,7 @@ def classify(f: PiecewiseLinearMap) -> BorderCollision:
         below=below,
         fixed=_fixed_points(f),
         two_cycle=(_two_cycle(f, -1.0), _two_cycle(f, 1.0)),
-        canonical=np.column_stack([np.poly(np.asarray(f.A_minus)), np.poly(np.asarray(f.A_plus))]),
+        canonical=np.column_stack([np.poly(np.asarray(A)) for A in (f.A_minus, f.A_plus)]).astype(float),
         gap=gap,
     )
 

@@ -81,7 +81,8 @@ def corner_impact(
     pieces = Pieces(make, method or EventDriven(), phase, checks.count("n", n))
     pieces.aim(p, x, corner)
     size = np.append(np.maximum(1.0, np.abs(x)), 1.0)
-    z, before, best = np.append(x, p), math.inf, np.append(x, p)
+    z: Array = np.append(x, p)
+    before, best = math.inf, z
     for _ in counted(range(MAX_ITERATIONS)):
         F = pieces.closing(z)
         error = float(np.max(np.abs(F) / size))

@@ -56,7 +56,7 @@ def border_point(family: Family, parameter: str, near: float, x: ArrayLike | Non
         raise UnknownName(f"parameter of {family.name}", parameter, family.parameters)
     d = len(np.asarray(family.x0))
     start = checks.array("x", family.x0 if x is None else x, (d,))
-    z = np.append(start, checks.number(parameter, near))
+    z: Array = np.append(start, checks.number(parameter, near))
     local = _Local(family, parameter)
     for _ in range(ITERATIONS):
         C, D = local.border(z)

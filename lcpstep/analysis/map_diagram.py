@@ -87,7 +87,7 @@ def periodic_points(
     ):
         try:
             point = periodic_point(P, x, n)
-        except (NotConverged, LcpStepError, ValueError, ArithmeticError, np.linalg.LinAlgError):
+        except (NotConverged, LcpStepError, ValueError, ArithmeticError):
             continue
         size = SAME * (1.0 + float(np.max(np.abs(point.points))))
         less = any(n % k == 0 and _near(point.points[0], point.points[k], size) for k in range(1, n))

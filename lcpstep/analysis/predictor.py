@@ -153,7 +153,7 @@ class Follower:
         predicted[-1] = end
         try:
             found, _ = self.correct(predicted, fixed)
-        except (ValueError, LcpStepError, np.linalg.LinAlgError):
+        except (ValueError, LcpStepError):
             return state
         if found is None or self.differ(state.z, found.z):
             return state
@@ -170,7 +170,7 @@ class Follower:
             if moved > 3.0 * ds or self.differ(state.z, found.z):  # caught by another branch
                 return None
             return self.with_tests(found), effort
-        except (ValueError, LcpStepError, np.linalg.LinAlgError):
+        except (ValueError, LcpStepError):
             return None
 
     def differ(self, z: Array, other: Array) -> bool:

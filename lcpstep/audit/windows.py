@@ -35,7 +35,8 @@ class Windows(NamedTuple):
         middle, no = 0.5 * (self.a + self.b), np.zeros(len(self.a), dtype=bool)
         left = self._replace(b=middle, last=no)
         right = self._replace(a=middle, first=no)
-        return Windows(*[np.concatenate([x, y]) for x, y in zip(left, right, strict=True)])
+        both: list[Any] = [np.concatenate([x, y]) for x, y in zip(left, right, strict=True)]
+        return Windows(*both)
 
 
 def joined(parts: list[Windows]) -> Windows:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -192,7 +192,7 @@ def say(line: str) -> None:
 
 
 @contextmanager
-def progress_bar(scene: Scene | HybridScene, title: str) -> Iterator[Callable[[float], None]]:
+def progress_bar(scene: Scene | HybridScene, title: str) -> Generator[Callable[[float], None], None, None]:
     """A bar over the scene's time span, on a terminal only."""
     from tqdm import tqdm
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from typing import Any
 
@@ -83,7 +83,7 @@ def _go_on(options: argparse.Namespace, latest: list[Any]) -> list[str]:
 
 
 @contextmanager
-def _periods_bar(options: argparse.Namespace, latest: list[Any]) -> Iterator[Progress]:
+def _periods_bar(options: argparse.Namespace, latest: list[Any]) -> Generator[Progress, None, None]:
     """A bar over the periods, on a terminal only; the exponent so far goes into `latest`."""
     from tqdm import tqdm
 

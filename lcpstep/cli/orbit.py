@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
@@ -237,7 +237,7 @@ def _run_branch(options: argparse.Namespace, orbit: PeriodicOrbit, names: tuple[
 
 
 @contextmanager
-def _points_bar(options: argparse.Namespace, parameter: str) -> Iterator[Progress]:
+def _points_bar(options: argparse.Namespace, parameter: str) -> Generator[Progress, None, None]:
     """A bar over the range of the parameter; each point of the branch is appended to a file as it is found."""
     from tqdm import tqdm
 

@@ -6,7 +6,7 @@ import argparse
 import shutil
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
@@ -130,7 +130,7 @@ def keeps_parts(options: argparse.Namespace) -> None:
 
 
 @contextmanager
-def work_bar(title: str) -> Iterator[Callable[[str], None]]:
+def work_bar(title: str) -> Generator[Callable[[str], None], None, None]:
     """A bar with the time left over each stage of what is done meanwhile, on a terminal only; ten times a second.
 
     What it gives names the stage.
@@ -140,7 +140,7 @@ def work_bar(title: str) -> Iterator[Callable[[str], None]]:
 
 
 @contextmanager
-def share_bar(title: str) -> Iterator[tuple[Any, Told]]:
+def share_bar(title: str) -> Generator[tuple[Any, Told], None, None]:
     """The same bar, and what to tell it: how far a loop is, and of how much."""
     from tqdm import tqdm
 
@@ -161,7 +161,7 @@ def share_bar(title: str) -> Iterator[tuple[Any, Told]]:
 
 
 @contextmanager
-def parts_bar(title: str) -> Iterator[Progress]:
+def parts_bar(title: str) -> Generator[Progress, None, None]:
     """A bar over the parts of a sweep, on a terminal only."""
     from tqdm import tqdm
 

@@ -70,7 +70,7 @@ class Model:
 def shapes(n_q: int, n_c: int) -> dict[str, tuple[int, ...]]:
     """Shapes of what the functions of a scene fill in."""
     square = n_q, n_q
-    system = {"force": (n_q,), "frame": (n_q, 3), "mass": square, "force_q": square, "force_v": square}
-    return system | {
+    return {
+        "force": (n_q,), "frame": (n_q, 3), "mass": square, "force_q": square, "force_v": square,
         "motion": (n_c, 3), "gap": (n_c,), "jacobian": (n_c, n_q), "gap_t": (n_c,), "bias": (n_c,),
     }  # fmt: skip

@@ -33,7 +33,7 @@ from lcpstep.rows import copy
 
 NAMES = tuple(Status)
 NAME_OF_SOLVED = Status.SOLVED
-new = tuple.__new__  # naming the fields of a Solution takes as long as solving for two unknowns
+new: Any = tuple.__new__  # naming the fields of a Solution takes as long as solving for two unknowns
 LARGEST_KEPT = 100  # unknowns up to which work spaces are kept: 250 kB at most
 LARGEST_ENUMERATION = 20  # unknowns; a million bases
 

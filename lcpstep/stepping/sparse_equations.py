@@ -70,7 +70,11 @@ class Equations:
         motion = None if contacts is None else contacts.motion
         named = {"force": system.force, "frame": system.frame, "motion": motion}
         given = {name: f for name, f in named.items() if callable(f)}
-        shapes = {"force": (n_q,), "frame": (n_q, 3), "motion": (len(self.offset), 3)}
+        shapes: dict[str, tuple[int, ...]] = {
+            "force": (n_q,),
+            "frame": (n_q, 3),
+            "motion": (len(self.offset), 3),
+        }
         self.callbacks = Callbacks(scene, "system", given, shapes)
 
     def force(self, t: float, q: Array, v: Array) -> Array:
@@ -116,7 +120,7 @@ class JointRows:
             template, size = csr_array(G), 0
             given = {"motion": None if joints is None else joints.motion}
         self.indices, self.indptr, self.data = template.indices, template.indptr, template.data
-        shapes = {"entries": (size,), "gap_t": (self.n,), "motion": (self.n, 3)}
+        shapes: dict[str, tuple[int, ...]] = {"entries": (size,), "gap_t": (self.n,), "motion": (self.n, 3)}
         given = {name: f for name, f in given.items() if f is not None}
         self.callbacks = Callbacks(scene, "joints", given, shapes)
 
