@@ -15,6 +15,7 @@ cdef void excesses "lcpstep_excesses"(
 ) noexcept nogil
 cdef void raise_to "lcpstep_raise_to"(double* target, double* x, double factor, Py_ssize_t m) noexcept nogil
 cdef long long largest_magnitude "lcpstep_largest_magnitude"(double* x, Py_ssize_t m) noexcept nogil
+cdef long long larger(long long a, long long b) noexcept nogil
 cdef void multiply(double* target, double factor, Py_ssize_t m) noexcept nogil
 cdef void copy(double* target, double* source, Py_ssize_t m) noexcept nogil
 cdef double largest_entry "lcpstep_largest_entry"(double* x, Py_ssize_t m) noexcept nogil
