@@ -2,6 +2,7 @@
 
 import argparse
 import importlib
+import itertools
 import shlex
 import signal
 import subprocess
@@ -193,9 +194,13 @@ def test_hard_cases_that_are_interrupted_go_on_with_the_scene_of_the_last_line(c
     assert said(err, "go on with") == "lcpstep hard --scene bouncing-ball dyadic-ball --method located"
 
 
-@pytest.mark.parametrize("between", shared([0.0, 0.02, 0.2], 3))
-@pytest.mark.parametrize("command", ["simulate", "bifurcation", "hard", "map"])
-def test_a_second_one_ends_at_once_without_a_traceback(command, between, tmp_path):
+# One that is at work in a loop of C, and one whose processes are
+TWICE = itertools.product(["simulate", "hard", "bifurcation", "map"], [0.0, 0.02, 0.2])
+
+
+@pytest.mark.parametrize("case", shared(TWICE, 6), ids=str)
+def test_a_second_one_ends_at_once_without_a_traceback(case, tmp_path):
+    command, between = case
     words = [command, *LONG[command].split()]
     _, err, seconds = interrupted(words, tmp_path, AFTER, again=between)
     assert seconds < LIMIT

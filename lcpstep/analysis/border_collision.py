@@ -179,13 +179,16 @@ def diagram(
     has no points.
     """
     checks.instance("f", f, PiecewiseLinearMap)
-    points, x = [], np.zeros(len(np.asarray(f.C)))
-    size = 1.0 + float(np.max(np.abs(np.concatenate([np.asarray(f.B_minus), np.asarray(f.B_plus)]))))
+    C, A, A_plus, B, B_plus = map(np.asarray, (f.C, f.A_minus, f.A_plus, f.B_minus, f.B_plus))
+    points, x = [], np.zeros(len(C))
+    size = 1.0 + float(np.max(np.abs(np.concatenate([B, B_plus]))))
     for value in counted(checks.vector("m", m).tolist()):
         orbit: list[Array] = []
+        border, limit = -f.D * value, bound * size * abs(value)
+        b, b_plus = B * value, B_plus * value
         for k in range(drop + keep):
-            x = f(x, float(value))
-            if not np.max(np.abs(x)) <= bound * size * abs(value):
+            x = A @ x + b if C @ x < border else A_plus @ x + b_plus
+            if not all(-limit <= a <= limit for a in x.tolist()):
                 orbit, x = [], np.zeros_like(x)
                 break
             if k >= drop:

@@ -188,7 +188,7 @@ def test_one_of_two_walls_lets_go_by_forces_that_begin_at_zero(tolerance, most):
 def judge(numbers, seed, methods, share):
     """Findings of new classes, each with its scene."""
     scenes = ((k, draw(seed, k)) for k in numbers)
-    for answer in answers(scenes, list(methods), workers=2, share=share):
+    for answer in answers(scenes, list(methods), workers=1, share=share):
         yield from [(answer.index, answer.scene, x) for x in new(answer.findings)]
 
 
