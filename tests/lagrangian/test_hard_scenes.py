@@ -75,11 +75,11 @@ def test_exact_motions_stay_outside_and_obey_their_equation(scene):
     for k, t in enumerate(times):
         g, _ = scene.gap(t, q[k], v[k])
         assert np.all(g >= -1e-12 * size)
-        around = np.concatenate(
-            [scene.gap(t + d, s[0][k], s[1][k])[0] for d, s in zip((-ETA, ETA), sides, strict=True)]
-        )
         moved.append(np.max(np.abs((sides[1][0][k] - sides[0][0][k]) / (2 * ETA) - v[k])))
-        if np.min(g) < OPEN or np.min(around) < OPEN or scene.n_j > 0:
+        if np.min(g) < OPEN or scene.n_j > 0:
+            continue
+        around = (scene.gap(t + d, s[0][k], s[1][k])[0] for d, s in zip((-ETA, ETA), sides, strict=True))
+        if any(np.min(beside) < OPEN for beside in around):
             continue
         a = (sides[1][1][k] - sides[0][1][k]) / (2 * ETA)
         wanted = accelerations(scene, t, q[k], v[k])
