@@ -29,8 +29,11 @@ SLOW = {  # films, a study, diagrams, basins, and what other tests show as well
     "ex18_chain_at_a_wall",
     "ex19_grazing",
     "ex20_ball_on_a_table",
+    "ex22_woodpecker",
     "ex23_painleve_rod",
     "ex25_two_stiffnesses",
+    "ex27_slope_landing",
+    "ex31_four_methods",
     "ex33_error_bars",
     "ex34_audit",
     "ex41_chapter_2_flips",
@@ -221,7 +224,7 @@ def test_an_example_says_what_it_shows(name):
 @pytest.mark.parametrize(
     "page",
     [
-        "README.md",
+        pytest.param("README.md", marks=pytest.mark.slow),
         pytest.param("docs/index.md", marks=pytest.mark.thorough),
         pytest.param("docs/first-five-minutes.md", marks=pytest.mark.slow),
         "docs/large-systems.md",

@@ -208,7 +208,7 @@ def test_a_second_one_ends_at_once_without_a_traceback(case, tmp_path):
     assert not list(tmp_path.rglob("*.partial*"))
 
 
-@pytest.mark.parametrize("loop", shared(SLOW_LOOPS, 2))
+@pytest.mark.parametrize("loop", shared(SLOW_LOOPS, 4))
 def test_no_loop_keeps_python_from_hearing(loop, tmp_path):
     _, err, seconds = interrupted(SLOW_LOOPS[loop].split(), tmp_path, AFTER)
     assert seconds < LIMIT

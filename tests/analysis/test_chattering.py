@@ -60,8 +60,7 @@ def assert_sequences_are_exact(rpm, turns, method=None, most=100):
             np.testing.assert_allclose(s.impacts, followed, rtol=0, atol=4e-12)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("rpm", [115.0, 119.7125])
+@pytest.mark.parametrize("rpm", shared([119.7125, 115.0], 2))
 def test_sequences_that_end_near_a_corner_agree_with_many_digits(rpm):
     assert_sequences_are_exact(rpm, 1, most=1)
 

@@ -74,7 +74,11 @@ def test_the_impact_oscillator_for_every_damping(zeta):
 # (rpm, tolerance): differences grow through the impacts of a chaotic motion, more than a thousandfold at 660 rpm
 @pytest.mark.parametrize(
     ("rpm", "tolerance"),
-    [(358.0, 1e-10), *(pytest.param(*x, marks=pytest.mark.slow) for x in ((660.0, 1e-8), (700.0, 1e-10)))],
+    [
+        (358.0, 1e-10),
+        pytest.param(660.0, 1e-8, marks=pytest.mark.slow),
+        pytest.param(700.0, 1e-10, marks=pytest.mark.thorough),
+    ],
 )
 @pytest.mark.parametrize("coordinates", ["relative", "absolute"])
 def test_the_cam_follower_over_two_seconds(rpm, tolerance, coordinates):

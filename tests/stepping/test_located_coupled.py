@@ -8,7 +8,7 @@ import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, Moreau, simulate
-from tests.marks import seeds, shared
+from tests.marks import seeds, shared, slow
 from tests.stepping import coupled
 
 ORDERS = [2, 4, "exact"]
@@ -83,8 +83,7 @@ def test_a_particle_comes_to_rest_in_a_groove(restitution):
         check_groove(k, restitution)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("restitution", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("restitution", slow([0.0, 0.3, 0.5], 0.3, longest=[0.0, 0.5]))
 def test_a_particle_comes_to_rest_in_every_groove(restitution):
     for k in range(6, 60):
         check_groove(k, restitution)

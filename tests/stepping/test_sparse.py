@@ -78,7 +78,7 @@ SAME = {
 
 
 @pytest.mark.parametrize("theta", [0.5, 1.0])
-@pytest.mark.parametrize("name", slow(SAME, "any graph, 40"))
+@pytest.mark.parametrize("name", slow(SAME, longest=["any graph, 40"]))
 def test_the_sparse_run_is_the_dense_run(name, theta):
     scene = SAME[name]
     a, b = (simulate(x, Moreau(1.7e-3, theta)) for x in (scene, made_dense(scene)))
