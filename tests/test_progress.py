@@ -130,7 +130,7 @@ def on_terminal(*words, seconds):
             ["hard", "--full"],
             ["thesis", "4.5", "4.12", "--out", "{out}"],
         ],
-        10,
+        5,
     ),
     ids=lambda words: words[0],
 )
