@@ -251,3 +251,40 @@ def test_an_impact_at_rounding_after_a_step_is_in_the_state_of_its_time(method):
     np.testing.assert_allclose(times, [0.5, 1.0], rtol=1e-15)
     for v in (run.at(times)[1], simulate(scene, method, keep=times).v):
         np.testing.assert_allclose(v[:, 0], [2.0, 1.0], rtol=1e-12)
+
+
+def billiard(mass, q, v, length, times):
+    """Elastic points on a line between walls at 0 and `length`, impact by impact: the states asked for."""
+    q, v, now, found = q.copy(), v.copy(), 0.0, []
+    while len(found) < len(times):
+        gap, speed = np.diff(q, prepend=0.0, append=length), np.diff(v, prepend=0.0, append=0.0)
+        wait = np.where(speed < 0.0, gap / np.where(speed < 0.0, -speed, 1.0), np.inf)
+        c = int(np.argmin(wait))
+        while len(found) < len(times) and times[len(found)] < now + wait[c]:
+            found.append(q + (times[len(found)] - now) * v)
+        q, now = q + wait[c] * v, now + wait[c]
+        both = slice(max(c - 1, 0), c + 1)  # the bodies of gap c; a wall stands still
+        share = (1.0 / mass[both]).sum()
+        toward = -1.0 if c == len(q) else 1.0
+        v[both] += (
+            np.array([-1.0, 1.0] if 0 < c < len(q) else [toward]) * -2.0 * speed[c] / share / mass[both]
+        )
+    return np.array(found)
+
+
+@pytest.mark.parametrize("method", [Located(0.1), Located(0.5, tolerance=1e-6)])
+def test_states_asked_for_between_impacts_in_turn_change_none_of_them(method):
+    rng, n = np.random.default_rng(5), 12
+    mass, q, v = rng.uniform(0.5, 2.0, n), np.arange(n) + rng.uniform(0.2, 0.8, n), rng.normal(size=n)
+    G, offset = np.eye(n + 1, n) - np.eye(n + 1, n, -1), np.append(np.zeros(n), float(n))
+    walls = LinearContacts(G, offset, restitution=1.0)
+    gas = Scene(LinearSystem(np.diag(mass)), q, v, (0.0, 10.0), contacts=walls)
+    times = np.linspace(0.0, 10.0, 777)
+    ends, kept = (simulate(gas, method, keep=keep) for keep in (10**6, times))
+    assert len(ends.impacts) > 50
+    assert_same_log(kept, ends)
+    np.testing.assert_allclose(kept.q, billiard(mass, q, v, float(n), times), rtol=0, atol=1e-11)
+    for c in range(n + 1):
+        log = kept.impacts[kept.impacts.contact == c]
+        logged = np.histogram(log.time, times, weights=log.impulse)[0]
+        np.testing.assert_allclose(kept.impulse[1:, c], logged, rtol=0, atol=1e-12)

@@ -107,10 +107,7 @@ def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, 
 
 def take_in_turn(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool:
     """Impacts of many bodies, one after another, where these can be followed so; whether there were any."""
-    free = (
-        w.n_c > 1 and w.closed_now == 0 and record.awaited() > t + w.end
-    )  # several bodies, and no state asked for
-    if not (plan.plain and plan.steady and free):
+    if not (plan.plain and plan.steady and w.n_c > 1 and w.closed_now == 0):
         return False
     done = race(m, plan, w, record, t, w.sigma, w.end, room(plan, w, record))
     if done > 0:
@@ -126,7 +123,7 @@ def room(plan: Plan, w: Work, record: Record) -> int:
     left = record.event_capacity - record.event - 4 * w.n_c
     most = left if left < most else most
     left = record.row_capacity - record.row - 4
-    return left if left < most else most
+    return left if record.keeps_events() and left < most else most
 
 
 def next_forces(m: Model, plan: Plan, w: Work, t: float) -> None:

@@ -15,8 +15,8 @@ import cython
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
 from lcpstep.kernels.record import Record
-from lcpstep.pointers import abs, inf
-from lcpstep.stepping.pieces.codes import GROUND, IMPACT, ROUNDING
+from lcpstep.pointers import abs, inf, max
+from lcpstep.stepping.pieces.codes import GROUND, IMPACT, ROUNDING, SAME_TIME
 from lcpstep.stepping.pieces.state import Plan, Work
 
 CLOSE = 1e-9  # of a step: impacts of a contact as close as this,
@@ -42,6 +42,7 @@ def race(m: Model, plan: Plan, w: Work, record: Record, t: float, sigma: float, 
         tau = w.next_zero[c]
         if not tau <= end or not ordinary(m, plan, w, c, tau):
             break
+        keep_times(plan, w, record, t, now, tau)
         hit(m, w, c, tau, end)
         record.note(t + tau, c, w.before[c], w.rate[c], w.p[c], IMPACT)
         w.lcp_calls += 1
@@ -53,12 +54,25 @@ def race(m: Model, plan: Plan, w: Work, record: Record, t: float, sigma: float, 
     return done
 
 
-def keep_impact(w: Work, record: Record, t: float, tau: float) -> None:
-    """Keep the state at tau; states at one time share a row."""
+def look_at(w: Work, tau: float) -> None:
+    """All coordinates at tau, each moved on from its own time."""
     for i in range(w.n_q):
         s = tau - w.q_time[i]
         w.q_try[i] = w.q[i] + s * (w.v[i] + 0.5 * s * w.a[i])
         w.v_try[i] = w.v[i] + s * w.a[i]
+
+
+def keep_times(plan: Plan, w: Work, record: Record, t: float, now: float, tau: float) -> None:
+    """Keep the states asked for from now on before the impact at tau; to rounding, those there come after it."""
+    before = t + tau - SAME_TIME * (abs(t + tau) + plan.h)
+    while record.awaited() < before:
+        look_at(w, max(now, record.awaited() - t))
+        record.keep_awaited(w.q_try, w.v_try, w.impulse)
+
+
+def keep_impact(w: Work, record: Record, t: float, tau: float) -> None:
+    """Keep the state at tau; states at one time share a row."""
+    look_at(w, tau)
     record.take_back(t + tau, w.impulse)
     record.keep(t + tau, 1.0, w.q_try, w.v_try, w.impulse)
 
