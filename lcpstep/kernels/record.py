@@ -117,6 +117,10 @@ class Record:
         """Whether the states after events are to be kept."""
         return self.on_events or self.every == 1
 
+    def keeps_event(self, t: float) -> bool:
+        """Whether the state after an event at time t is to be kept: also where one of that time is kept already."""
+        return self.keeps_events() or self.last_time() == t
+
     def take_back(self, t: float, impulse: Doubles) -> bool:
         """Take back the last kept state if it is of time t: events at one time share a row. Whether it was.
 

@@ -53,7 +53,7 @@ def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
         zero_speeds(w, w.v_try)
     if not renew_forces(m, plan, w, now):
         return NOT_FINITE
-    if record.keeps_events():
+    if record.keeps_event(now):
         keep(w, record, now, 1.0)
     return FINISHED
 

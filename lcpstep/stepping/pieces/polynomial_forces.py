@@ -89,6 +89,6 @@ def decide(
         return False
     for c in range(n_c):
         w.half[c] = 0.5 * (product(w.G, w.a, c, w.n_q) + w.bias[c]) if w.status[c] == OPEN else 0.0
-    if record.event > before and (record.keeps_events()):
+    if record.event > before and record.keeps_event(t):
         keep(w, record, t, 1.0)
     return True

@@ -145,7 +145,7 @@ def lose_force(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) 
         return
     release(m, plan, w, record, c, t, 0.0)
     w.grounded[c] = LEFT
-    if record.keeps_events():
+    if record.keeps_event(t):
         keep(w, record, t, 1.0)
 
 
@@ -236,6 +236,6 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int
     for k in range(n_s):  # rounding of the velocity must not be larger than that of small hops
         d = w.chosen[k]
         lift(m, plan, w, w.v, d, w.rate[d] - product(w.G, w.v, d, w.n_q) - w.gap_t[d])
-    if record.keeps_events():
+    if record.keeps_event(t):
         keep(w, record, t, 1.0)
     return FINISHED

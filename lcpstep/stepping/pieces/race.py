@@ -47,7 +47,7 @@ def race(m: Model, plan: Plan, w: Work, record: Record, t: float, sigma: float, 
         record.note(t + tau, c, w.before[c], w.rate[c], w.p[c], IMPACT)
         w.lcp_calls += 1
         done, struck, now = done + 1, c, tau
-        if record.keeps_events():
+        if record.keeps_event(t + tau):
             keep_impact(w, record, t, tau)
     if done > 0:
         gather(w, now, struck)

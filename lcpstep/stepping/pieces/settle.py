@@ -140,6 +140,6 @@ def begin_again(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
         record.keep_awaited(w.q_try, w.v, w.impulse)
     if not renew_forces(m, plan, w, t):
         return NOT_FINITE
-    if record.keeps_events():
+    if record.keeps_event(t):
         keep(w, record, t, 1.0)
     return FINISHED
