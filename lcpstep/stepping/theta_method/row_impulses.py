@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.kernels.coulomb import motion_of, solve_contacts
+from lcpstep.kernels.coulomb import DEGENERATE, motion_of, solve_contacts
 from lcpstep.kernels.energetic import strike_in_turn
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.repose import AT_REST
@@ -62,7 +62,30 @@ def pose(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, rebou
     if c.n_j > 0 and leave_out_what_bears_nothing(c, n_a):
         impact = rates(m, s, c, n_a, rebounds)
         without_joints(m.linear, plan, s, c, n_a)
+    if impact and rebounds and not c.in_turn:
+        tie_tangents(m, c, n_a)
     return impact
+
+
+def tie_tangents(m: Model, c: Rows, n_a: int) -> None:
+    """Where a tangent can only move with its normal, so did it before the blow.
+
+    As of a mechanism of one coordinate. Rows before the step are others, by O(h), and where friction jams no impulse
+    answers what these leave of the sliding when the normal has got its rebound.
+    """
+    R, rate, n = c.problem.mobility, c.problem.rate, n_a + c.n_f
+    for f in range(c.n_f):
+        k, T = c.problem.carrier[f], n_a + f
+        R_NN, R_TT, R_TN = R[k * n + k], R[T * n + T], R[T * n + k]
+        u = c.blows.u[c.problem.ids[k]]
+        if abs(R_NN * R_TT - R[k * n + T] * R_TN) <= DEGENERATE * R_NN * R_TT and abs(u) > c.blows.least:
+            r = c.tangent_restitution[c.problem.ids[k]]
+            own = rate[T] - r * c.blows.sliding[c.problem.ids[k]]
+            with_normal = R_TN / R_NN * (rate[k] - m.restitution[c.problem.ids[k]] * u)
+            belt = own - with_normal
+            if abs(belt) <= ROUNDING * (abs(own) + abs(with_normal)):
+                belt = 0.0
+            rate[T] = with_normal + belt + r * (R_TN / R_NN * u + belt)
 
 
 def without_joints(linear: bool, plan: Plan, s: State, c: Rows, n_a: int) -> None:
