@@ -24,6 +24,7 @@ from lcpstep.pace import FIRST, Pace
 Array = NDArray[np.float64]
 RARE = 0.01  # landings per iteration, below which the growth between them is told
 BLOCKS = 20  # for the standard error
+ALIGNING = 500  # iterations, at most, in which the deviation turns to where it grows most
 PIECES = 1000  # of a run that sums are kept of
 PORTION = 65536  # iterations between two looks at the outside world, at most
 Progress = Callable[[int, "Lyapunov", Array], None]
@@ -107,7 +108,7 @@ def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0, *, progress: Progress 
     P : map
     x : (d,)   where the orbit starts
     n : iterations that are averaged over; their number costs time, not memory
-    drop : iterations before
+    drop : iterations before, in the last of which the deviation turns to where it grows most
     progress : called now and then with the iterations averaged so far, their exponent, and the state reached (d,)
 
     Raises
@@ -118,9 +119,13 @@ def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0, *, progress: Progress 
     state = np.array(checks.vector("x", x))
     n, drop = checks.count("n", n), int(checks.number("drop", drop, least=0))
     growth, direction, pace = Growth(n), np.eye(len(state))[0], Pace(PORTION, FIRST, n)
+    if drop > 0:
+        images, derivatives = along(P, state, min(drop, ALIGNING), max(drop - ALIGNING, 0))
+        growth_along(derivatives, direction)
+        state = images[-1]
     while growth.done < n:
         portion = min(pace.goal(growth.done), n) - growth.done
-        images, derivatives = along(P, state, portion, 0 if growth.done else drop)
+        images, derivatives = along(P, state, portion)
         growth.add(growth_along(derivatives, direction))
         state = images[-1]
         if progress is not None:

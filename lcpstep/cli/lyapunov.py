@@ -98,7 +98,8 @@ def _periods_bar(options: argparse.Namespace, latest: list[Any]) -> Generator[Pr
 
 
 def _print(options: argparse.Namespace, scene: Any, found: Lyapunov) -> None:
-    words = "chaotic" if found.chaotic else "not chaotic"
+    negative = found.largest <= -3.0 * found.error
+    words = "chaotic" if found.chaotic else "not chaotic" if negative else "too uncertain to tell chaos"
     if options.json:
         numbers = {k: v for k, v in vars(found).items() if not isinstance(v, str)}
         finite = {k: v if math.isfinite(v) else str(v) for k, v in numbers.items()}

@@ -49,7 +49,7 @@ def test_the_exponent_of_any_number_of_iterations_is_summed_in_portions(monkeypa
     small, reached = Logistic(), []
     found = lyapunov(small, [0.3], 5001, drop=3, progress=lambda *x: reached.append(x))
     assert max(small.asked) <= 7
-    assert [x[0] for x in reached] == list(np.cumsum(small.asked))
+    assert [x[0] for x in reached] == list(np.cumsum(small.asked[1:]))  # after those dropped
     assert reached[-1][:2] == (5001, found)
     monkeypatch.setattr("lcpstep.analysis.lyapunov.PORTION", 5001)
     monkeypatch.setattr("lcpstep.analysis.lyapunov.FIRST", 1)
@@ -57,6 +57,30 @@ def test_the_exponent_of_any_number_of_iterations_is_summed_in_portions(monkeypa
     assert lyapunov(whole, [0.3], 5001, drop=3) == found  # to the last bit
     assert len(whole.asked) < len(small.asked)
     assert found.largest == pytest.approx(math.log(2.0), abs=4.0 * found.error)
+
+
+def test_the_deviation_turns_to_where_it_grows_most_before_anything_is_averaged():
+    angle, rates = 0.1, np.diag([0.9, 0.6])
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    A = (
+        turn
+        @ np.array([[1.0, 3.0], [0.0, 1.0]])
+        @ rates
+        @ np.linalg.inv(turn @ np.array([[1.0, 3.0], [0.0, 1.0]]))
+    )
+
+    class Linear:
+        """x -> A x, whose largest multiplier is 0.9."""
+
+        def __call__(self, x):
+            return A @ x
+
+        def jacobian(self, x):
+            return A
+
+    found = lyapunov(Linear(), [1.0, 1.0], 50, drop=200)
+    assert found.largest == pytest.approx(math.log(0.9), abs=1e-13)
+    assert found.error < 1e-13
 
 
 def test_the_error_is_that_of_means_over_blocks():
