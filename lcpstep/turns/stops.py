@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.intervals import NotEnclosed
-from lcpstep.turns.refine import JUMP, MUCH, Leaves, jump_times, leaves
+from lcpstep.turns.refine import APART, JUMP, LITTLE, MUCH, Leaves, jump_times, leaves
 from lcpstep.turns.source import Source, belts, sources
 
 Array = NDArray[np.float64]
@@ -101,7 +101,7 @@ def _remembered(
         if found is None:  # all of it turns fast, as samples show as well
             continue
         short = fast(found, SHORT * usual(found, base), ends, source.steady)
-        stops.append(corners_between(source, found))
+        stops += [corners_between(source, found), jump_at(source, found, ends)]
         jumps, times = jump_times(source, found.a[found.jumps], found.b[found.jumps])
         turned = short.copy()
         turned[found.jumps] = ~jumps
@@ -130,6 +130,14 @@ def corners_between(source: Source, found: Leaves) -> Array:
     size = JUMP * np.maximum(found.near[1:], found.near[:-1])[:, None]
     apart = np.maximum(found.lo[1:] - found.hi[:-1], found.lo[:-1] - found.hi[1:])
     return np.asarray(found.b[:-1][np.any(apart > size, axis=1)])
+
+
+def jump_at(source: Source, found: Leaves, ends: Array) -> Array:
+    """The first of the ends where a speed jumps there, which no leaf shows: differences would look across it."""
+    start, beside = ends[:1], 2.0 * APART * max(ends[-1] - ends[0], abs(ends[0]))
+    fastest = float(np.max(np.abs(source.values(found.a)[..., 1])))
+    jumps, _ = jump_times(source, start - beside, start + beside, LITTLE / JUMP * fastest)
+    return start[jumps]
 
 
 def _divided(source: Source, ends: Array, base: float) -> tuple[Source, Leaves | None]:
