@@ -54,7 +54,8 @@ class Energy:
         every step, otherwise that of the events of the impact log
     friction : dissipated up to t by dry friction
     residual : total - total[0] - work - obstacles + damping + impacts + friction
-    created : record array of time [s], energy [J]: steps in whose contacts energy was created
+    created : record array of time [s], energy [J]: steps in whose contacts energy was created, or in which belts, or
+        joints that move, did work, which is not told apart
     """
 
     t: Array
@@ -88,7 +89,7 @@ def energy(trajectory: Trajectory) -> Energy:
 
     Returns
     -------
-    Energy; its `created` is empty where no contact created energy
+    Energy; its `created` is empty where no contact created energy and no belt did work
 
     Examples
     --------

@@ -281,6 +281,10 @@ def _run_diagram(options: argparse.Namespace, family: Family) -> int:
     finish(options, data, picture(data, title), names)
     lost = int(np.sum(~np.isfinite(data["x"].values[:, 0, 0])))
     chaotic = int(np.sum(data["lyapunov"].values > 3.0 * data["lyapunov_error"].values))
+    if options.json:
+        found = {"values": data[parameter].values.tolist(), "positive_exponent": chaotic, "unbounded": lost}
+        print(json.dumps({"map": family.name, "parameter": parameter} | found, indent=2))
+        return DONE
     print(
         f"{options.points} values: {chaotic} with a positive exponent, {lost} where the orbit leaves all bounds"
     )

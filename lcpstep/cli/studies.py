@@ -95,14 +95,17 @@ def files(options: argparse.Namespace, name: str) -> tuple[Path, Path]:
 
 
 def finish(options: argparse.Namespace, data: Any, figure: Any, names: tuple[Path, Path]) -> None:
-    """Save data and picture, None for none, and drop the parts of the sweep, which are no longer needed."""
+    """Save data and picture, None for none, and drop the parts of the sweep, which are no longer needed.
+
+    What was written is said, beside JSON not among it.
+    """
     dataset.save(data, names[0], overwrite=options.overwrite)
     interrupt.wrote(names[0])
     if figure is not None:
         save_figure(figure, names[1])
     shutil.rmtree(options.out / PARTS, ignore_errors=True)
     for name in names[: 1 if figure is None else 2]:
-        print(f"wrote {name}")
+        print(f"wrote {name}", file=sys.stderr if getattr(options, "json", False) else sys.stdout)
 
 
 def stopped(run: Callable[[argparse.Namespace], int]) -> Callable[[argparse.Namespace], int]:

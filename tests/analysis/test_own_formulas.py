@@ -50,6 +50,20 @@ def test_a_map_of_ones_own(capsys, tmp_path):
     assert "exists already; --overwrite" in err
 
 
+def test_a_diagram_prints_json(capsys, tmp_path):
+    """The logistic map is chaotic at r = 3.9 and 4, and has period two and four at 3.4 and 3.5."""
+    words = ("logistic", "--range", 3.4, 3.5, "--points", 2, "--json", "--out", tmp_path)
+    status, out, err = run_map(capsys, *words)
+    assert status == DONE
+    found = json.loads(out)
+    assert (found["parameter"], found["values"], found["positive_exponent"]) == ("r", [3.4, 3.5], 0)
+    assert "wrote" in err
+    chaotic = run_map(
+        capsys, "logistic", "--range", 3.9, 4.0, "--points", 2, "--json", "--out", tmp_path / "2"
+    )
+    assert json.loads(chaotic[1])["positive_exponent"] == 2
+
+
 def test_an_orbit_that_leaves_all_bounds_says_so(capsys):
     family = Family("away", lambda x, p: 3.0 * x, [1.0])
     with pytest.raises(Escaped, match="left all bounds after 14 iterations"):
