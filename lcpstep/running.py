@@ -32,14 +32,16 @@ Array = NDArray[np.float64]
 
 
 class Portions(ABC):
-    """Whatever is fed to a kernel in portions, until it is over."""
+    """Whatever is fed to a kernel in portions, until it is over; `course`: that kernel, see `kernels.course`."""
+
+    course: Any
 
     def __init__(self, method: Any, scene: Any, kept: Kept, pace: Pace) -> None:
         self.method, self.scene, self.kept, self.pace = method, scene, kept, pace
 
-    @abstractmethod
     def advance(self, goal: int) -> int:
         """Call the kernel, for `done` to become `goal` at most; a `Status`, or BUFFER_FULL: why it returned."""
+        return int(self.course.advance(goal))
 
     @property
     @abstractmethod

@@ -27,27 +27,16 @@ FIRST_STEP = 0.1  # of the scan interval
 
 
 class EventRun(Run):
-    """One run from event to event; `course`: its kernel, see `kernels.course`."""
-
-    course: Any
+    """One run from event to event."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, recorder: Recorder) -> None:
         super().__init__(method, scene, kept, recorder, PORTION)
         self.tally, self.closed = Tally(method.max_events), False  # closed: the last state has been kept
 
     @property
-    @abstractmethod
-    def interval_end(self) -> float:
-        """End of the interval at hand [s]."""
-
-    @property
     def evaluations(self) -> int:
         """How often forces were evaluated; never where their motion is known."""
         return 0
-
-    def advance(self, goal: int) -> int:
-        """Call the kernel, up to step number `goal`; why it returned."""
-        return int(self.course.advance(goal))
 
     @property
     def done(self) -> int:
@@ -57,12 +46,7 @@ class EventRun(Run):
     @property
     def ahead(self) -> Array:
         """Times at which a callback may be what has failed [s]."""
-        return np.linspace(self.now, self.interval_end, TRIALS)
-
-    @property
-    def horizon(self) -> float:
-        """How far ahead the run looks [s]."""
-        return self.interval_end
+        return np.linspace(self.now, self.horizon, TRIALS)
 
     @property
     def counts(self) -> Counts:
@@ -109,7 +93,8 @@ class Integrated(EventRun):
         self, method: Any, scene: Scene, kept: Kept, clock: Any, motion: Any, scan: float, columns: int,
         constant: bool,
     ) -> None:  # fmt: skip
-        super().__init__(method, scene, kept, recorder_for(scene, kept, columns, constant))
+        shape = (1, scene.n_q) if constant else (7, 2 * scene.n_q)  # an acceleration, or dense output
+        super().__init__(method, scene, kept, Recorder(scene.n_q, columns, kept, shape if kept.all else None))
         self.clock, self.motion, self.scan, self.constant = clock, motion, scan, constant
 
     @property
@@ -129,7 +114,7 @@ class Integrated(EventRun):
         return float(self.clock.t0)
 
     @property
-    def interval_end(self) -> float:
+    def horizon(self) -> float:
         """End of the interval at hand [s]."""
         return min(self.scene.t_span[1], self.now + self.scan)
 
@@ -185,12 +170,6 @@ class Between(ABC):
 def without_impulses(s: States) -> States:
     """The states alone: their impulses are the trajectory's."""
     return s._replace(impulse=np.zeros((0, 0)))
-
-
-def recorder_for(scene: Scene, kept: Kept, columns: int, constant: bool) -> Recorder:
-    """What is kept, with so many impulses, and the motion after each state: its acceleration, or dense output."""
-    shape = (1, scene.n_q) if constant else (7, 2 * scene.n_q)
-    return Recorder(scene.n_q, columns, kept, shape if kept.all else None)
 
 
 @dataclass(eq=False)

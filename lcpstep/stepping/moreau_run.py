@@ -48,6 +48,7 @@ class MoreauRun(StepRun):
         expected = kept.of_steps(number(scene.t_span, method.h)) if method.tolerance is None else None
         recorder = Recorder(scene.n_q, self.rows.n, kept, expected=expected)
         super().__init__(method, scene, kept, recorder, PORTION)
+        self.impulse = self.place.arrays["impulse"]
         self.slack = RESTING * (places(self.model, scene.q0, scene.v0, method.h) or 1.0)
         made, external = self.plan_for(self.stretches[0][0]), method.lcp != "lemke"
         self.loop = loop.Steps(self.model, made, self.place, self.rows, recorder.record, external)
@@ -74,15 +75,6 @@ class MoreauRun(StepRun):
             if code == NEED_LCP and not solved:
                 return Status.LCP_FAILED
         return int(code)
-
-    @property
-    def plan(self) -> Plan:
-        """What steps of one size multiply with."""
-        return self.loop.plan
-
-    @plan.setter
-    def plan(self, p: Plan) -> None:
-        self.loop.plan = p
 
     def plan_for(self, h: float) -> Plan:
         """What steps of size h multiply with."""
@@ -122,19 +114,10 @@ class MoreauRun(StepRun):
         return self.place.arrays["q"], self.place.arrays["v"]
 
     @property
-    def ahead(self) -> tuple[float, float]:
-        """Times at which a callback may be what has failed [s]."""
-        return self.now, self.now + self.plan.h
-
-    @property
     def counts(self) -> Counts:
         """Work done."""
         s = self.place
         return Counts(s.steps, s.problems, s.forces, self.recorder.taken)
-
-    def with_last(self, s: States) -> States:
-        """The states, and the one that has been reached."""
-        return s.and_then(self.now, *self.state, self.place.arrays["impulse"])
 
     def dense(self, s: States) -> interpolation.Between:
         """How states between kept ones follow from them."""

@@ -45,6 +45,7 @@ class SparseRun(StepRun):
     """One run of a sparse scene; see `moreau`, whose rules for steps, kept states and endings it obeys."""
 
     steps, now = 0, 0.0  # taken; time of the current state [s]
+    plan: Any = None
 
     def __init__(self, method: Moreau, scene: Scene, kept: Kept) -> None:
         n_q, n_c = scene.n_q, scene.n_c
@@ -64,11 +65,6 @@ class SparseRun(StepRun):
     def state(self) -> tuple[Array, Array]:
         """Last known q and v."""
         return self.q, self.v
-
-    @property
-    def ahead(self) -> tuple[float, float]:
-        """Times at which a callback may be what has failed [s]."""
-        return self.now, self.now + self.method.h
 
     @property
     def counts(self) -> Counts:
@@ -218,10 +214,6 @@ class SparseRun(StepRun):
         """Keep a state; the impulses summed up to it start anew."""
         self.recorder.keep(t, q, v, self.impulse)
         self.impulse[:] = 0.0
-
-    def with_last(self, s: States) -> States:
-        """The states, and the one that has been reached."""
-        return s.and_then(self.now, self.q, self.v, self.impulse)
 
     def dense(self, s: States) -> interpolation.Linear:
         """How states between kept ones follow from them."""

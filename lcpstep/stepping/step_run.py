@@ -21,12 +21,14 @@ from lcpstep.stepping.steps import divided, unresolved
 class StepRun(Run):
     """One run by steps.
 
-    plan       what steps of size plan.h multiply with
+    loop       the kernel that takes the steps, with its plan
+    impulse    since the last kept state
     t0, first  time of a step, and its number
     control    a `step_control.Control`, of steps by a tolerance
     """
 
-    plan: Any
+    loop: Any
+    impulse: Any
     control: Any = None
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, recorder: Recorder, most: int) -> None:
@@ -48,10 +50,6 @@ class StepRun(Run):
     def plan_for(self, h: float) -> Any:
         """What steps of size h multiply with."""
 
-    @abstractmethod
-    def with_last(self, s: States) -> States:
-        """The states, and the one that has been reached."""
-
     def controlled_by(self, control: Any) -> None:
         """Go on in steps that this control chooses."""
         self.control, self.pace = control, Pace(LOOK, self.scene.n_q + self.recorder.record.n_c)
@@ -65,6 +63,20 @@ class StepRun(Run):
     def over(self) -> bool:
         """Whether the end of the span is reached."""
         return self.arrived if self.control is not None else self.steps >= self.stretches[-1][3]
+
+    @property
+    def plan(self) -> Any:
+        """What steps of size plan.h multiply with."""
+        return self.loop.plan
+
+    @plan.setter
+    def plan(self, p: Any) -> None:
+        self.loop.plan = p
+
+    @property
+    def ahead(self) -> Any:
+        """Times at which a callback may be what has failed [s]."""
+        return self.now, self.now + self.plan.h
 
     @property
     def horizon(self) -> float:
@@ -90,13 +102,14 @@ class StepRun(Run):
             cause()  # an interrupt goes on its way
             if code == WANTED:
                 self.control.prepare()
-        self.arrived = code == REACHED and self.control.arrived
+        self.arrived = code == REACHED and self.control.reached[2]
         return code
 
     def empty(self) -> None:
         """Move what the kernels have written to the recorder's keeping."""
         if self.control is not None:
-            self.t0, self.first, self.plan.h = self.control.time, self.steps, self.control.step
+            self.t0, self.plan.h, _ = self.control.reached
+            self.first = self.steps
         super().empty()
 
     def states(self) -> States:
@@ -106,7 +119,7 @@ class StepRun(Run):
             q, v = np.array(self.scene.q0), np.array(self.scene.v0)
             s = s.and_then(self.scene.t_span[0], q, v, np.zeros(s.impulse.shape[1]))
         if not self.kept.given and self.now > s.t[-1]:
-            s = self.with_last(s)
+            s = s.and_then(self.now, *self.state, self.impulse, 1.0)
         if len(s.t) and abs(s.t[-1] - end) <= unresolved(self.scene.t_span, self.method.h):
             s.t[-1] = end
         return s

@@ -45,7 +45,7 @@ class ArcRun(EventRun):
         return float(self.arc.now)
 
     @property
-    def interval_end(self) -> float:
+    def horizon(self) -> float:
         """End of the interval at hand [s]."""
         return float(self.arc.t_end)
 

@@ -64,16 +64,11 @@ def flight_of(scene: Scene, m: Model, o: Any, given: dict[str, float], *counted:
     return flight
 
 
-def recorder(scene: Scene, kept: Kept) -> Recorder:
-    """What is kept of one contact or none."""
-    return Recorder(1, scene.n_c, kept)
-
-
 class ClosedForm(EventRun):
     """A run in closed form."""
 
     def __init__(self, method: Any, scene: Scene, kept: Kept, m: Model, o: Oscillator) -> None:
-        super().__init__(method, scene, kept, recorder(scene, kept))
+        super().__init__(method, scene, kept, Recorder(1, scene.n_c, kept))
         self.model, self.oscillator = m, o
         self.given = bounds(scene, m, o, method)
         self.flight = flight_of(scene, m, o, self.given, self.recorder.record, self.tally)
@@ -85,7 +80,7 @@ class ClosedForm(EventRun):
         return self.flight.now
 
     @property
-    def interval_end(self) -> float:
+    def horizon(self) -> float:
         """End of the interval at hand [s]."""
         f = self.flight
         return min(f.t_end, f.high, f.now + STRIDE * f.scan)

@@ -54,10 +54,6 @@ class HybridRun(Portions):
         _check_start(scene, self.motion.m)
         self.parts: list[tuple[Array, Array, Array]] = []
 
-    def advance(self, goal: int) -> int:
-        """Call the kernel, for `done` to become `goal` at most; why it returned."""
-        return int(self.course.advance(goal))
-
     @property
     def done(self) -> int:
         """Steps taken."""

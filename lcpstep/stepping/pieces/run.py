@@ -46,6 +46,7 @@ class LocatedRun(StepRun):
         expected = None if steps is None else steps + steps // 16 + SPARE  # and events
         recorder = Recorder(scene.n_q, scene.n_c, kept, expected=expected)
         super().__init__(method, scene, kept, recorder, PORTION)
+        self.impulse = self.work.view("impulse")
         kind = QuadraticSteps if method.order == 2 else PolynomialSteps
         self.loop = kind(self.model, p, self.work, self.recorder.record)
         self.loop.stop = scene.t_span[1]
@@ -64,15 +65,6 @@ class LocatedRun(StepRun):
                 Attempts(self.loop, lambda h: self.plan_for(h).fields, span, h, tolerance, order)
             )
         return code
-
-    @property
-    def plan(self) -> Plan:
-        """Constants of steps of one size."""
-        return self.loop.plan
-
-    @plan.setter
-    def plan(self, p: Plan) -> None:
-        self.loop.plan = p
 
     def plan_for(self, h: float) -> Plan:
         """Constants of steps of size h."""
@@ -136,10 +128,6 @@ class LocatedRun(StepRun):
         """Kept states up to before the end in the coordinates of the scene."""
         if self.model.carried:
             self.loop.put_back(end)
-
-    def with_last(self, s: States) -> States:
-        """The states, and the one that has been reached."""
-        return s.and_then(self.now, *self.state, self.work.view("impulse"), 1.0)
 
     def states(self) -> States:
         """All states kept; a step that failed may have left its numbers behind."""

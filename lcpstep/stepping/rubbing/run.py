@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from lagrangian import Scene
 from lcpstep.events.contacts.run import ContactRun, start
 from lcpstep.stepping.adaptive import FIRST
@@ -43,11 +41,6 @@ class RubbingRun(ContactRun):
             others = " and the others" if n_j + len(self.closed_ones) > 1 else ""
             return f"no position near satisfies {what}{others} {self.where}; try a smaller h"
         return super().why(code)
-
-    @property
-    def ahead(self) -> np.ndarray:
-        """Times at which a callback may be what has failed [s]."""
-        return np.linspace(self.now, self.horizon, len(super().ahead))
 
     @property
     def horizon(self) -> float:
