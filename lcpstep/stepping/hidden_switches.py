@@ -84,11 +84,8 @@ class Switches:
 
     def measure(self, k: int, plan: Plan, s: State, rows: Rows) -> None:
         """How a row answers impulses."""
-        total, most, n = 0.0, 0.0, s.n_q
-        for j in range(n):
-            total += rows.H[k * n + j] * plan.X[k * n + j]
-            most = max(most, abs(plan.X[k * n + j]))
-        self.mobility[k], self.response[k] = total, most
+        X, n = after(plan.X, k * s.n_q), s.n_q
+        self.mobility[k], self.response[k] = product(rows.H, X, k, n), largest(X, 0.0, n)
 
     def note_friction(self, part: int, plan: Plan, s: State, rows: Rows, slow: float) -> None:
         """The same of the tangents."""

@@ -32,7 +32,7 @@ import numpy as np
 
 from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.clock import Clock
-from lcpstep.kernels.vectors import copy, copy_indices, distance, largest
+from lcpstep.kernels.vectors import clear, copy, copy_indices, distance, largest
 from lcpstep.pointers import abs, after, inf, max, min
 from lcpstep.stepping.adaptive import LEVELS
 from lcpstep.stepping.hidden_edges import Edges, dip
@@ -229,8 +229,7 @@ class Attempts(Control):
         copy(self.part_q, self.s.q, self.s.n_moving)
         self.rows.blows.least = slow
         self.s.opened = self.tolerance * (1.0 + self.size_q)
-        for i in range(self.s.n_c):
-            self.rows.p[i] = 0.0
+        clear(self.rows.p, self.s.n_c)
 
     def after_part(self, h: float, slow: float) -> None:
         """Errors of a part at its contacts."""

@@ -18,7 +18,7 @@ from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import touching
 from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints
 from lcpstep.kernels.status import DONE, NOT_FINITE
-from lcpstep.kernels.vectors import clear, product
+from lcpstep.kernels.vectors import clear, copy_indices, product
 from lcpstep.pointers import abs, min
 
 MOMENT, SHORTEST, SHORTER = 1e-4, 1e-9, 0.1  # of the next step; and how much shorter where a hop can be told
@@ -57,8 +57,7 @@ def pulls(s: Rubbing) -> bool:
 
     Walls that are nearly parallel take from two such forces, which cancel, what they hold in the little that is left.
     """
-    for c in range(s.n_c):
-        s.tried[c] = s.mode[c]
+    copy_indices(s.tried, s.mode, s.n_c)
     some = adopt_modes(s) != DONE
     accelerate_as_held(s.rows)
     noise = force_noise(s)

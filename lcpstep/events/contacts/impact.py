@@ -25,7 +25,7 @@ from lcpstep.kernels.record import Record
 from lcpstep.kernels.recurrence import FOR_EVER, looks_back
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
 from lcpstep.kernels.tally import Tally
-from lcpstep.kernels.vectors import clear
+from lcpstep.kernels.vectors import clear, copy_indices
 from lcpstep.pointers import abs, after, inf, max, min
 
 ROUNDS = 100_000  # problems of impacts at one instant
@@ -98,12 +98,10 @@ def can_rest(s: Rubbing) -> bool:
     Contacts between which there is no room are left closed, as a message names them.
     """
     look_before(s)
-    for c in range(s.n_c):
-        s.tried[c] = s.mode[c]
+    copy_indices(s.tried, s.mode, s.n_c)
     n_a, n_f = gather(s, True)
     found = find_impulses(s, n_a, n_f, True)
-    for c in range(s.n_c if found else 0):
-        s.mode[c] = s.tried[c]
+    copy_indices(s.mode, s.tried, s.n_c if found else 0)
     return found
 
 

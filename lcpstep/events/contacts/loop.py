@@ -42,7 +42,7 @@ from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.record import Record
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 from lcpstep.kernels.tally import Tally
-from lcpstep.kernels.vectors import clear, copy
+from lcpstep.kernels.vectors import clear, copy, copy_indices
 from lcpstep.pointers import abs, max, min
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
@@ -191,8 +191,7 @@ def seek_modes(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     if code == DONE and opens_any(s):
         code = reconsider(s, t, longest)
     if code == DONE and undecided(s):
-        for c in range(s.n_c):
-            s.tried[c] = s.new_mode[c]
+        copy_indices(s.tried, s.new_mode, s.n_c)
         code = look_on(s, t, longest)
         if code == DONE:
             tell_left(s, record, tally, t)
@@ -226,8 +225,7 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
             break
         ahead *= FURTHER
     code = adopt_modes(s)
-    for c in range(s.n_c):
-        s.new_mode[c] = s.mode[c]
+    copy_indices(s.new_mode, s.mode, s.n_c)
     if code != DONE:
         return code
     return DONE if measure(s, t, s.y) else NOT_FINITE

@@ -21,7 +21,7 @@ from lcpstep.events.rows.problem import fill
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import solve_contacts
 from lcpstep.kernels.status import DONE, JOINTS_FAILED
-from lcpstep.kernels.vectors import clear, copy, largest, product
+from lcpstep.kernels.vectors import add, clear, copy, largest, product
 from lcpstep.pointers import abs, after
 
 PASSES = 1e-12  # of the terms of a gap acceleration: one into the surface that is no rounding
@@ -76,8 +76,7 @@ def solve_members(s: Mechanism) -> bool:
     fill(s, k, 0)
     solved = solve_contacts(s.problem, k, 0)
     if not solved:
-        for a in range(k):
-            s.problem.rate[a] = s.problem.rate[a] + s.lift[a]
+        add(s.problem.rate, 1.0, s.lift, k)
         solved = solve_contacts(s.problem, k, 0)
     if not solved:
         clear(found, k)

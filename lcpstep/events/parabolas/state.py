@@ -14,6 +14,7 @@ from lcpstep.events.rows.equations import size_of
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.together import gap_rounding
+from lcpstep.kernels.vectors import add, copy
 from lcpstep.pointers import abs, after, inf, max
 
 
@@ -52,8 +53,7 @@ class Mechanism(Contacts):
     def start(self, q: Any, v: Any) -> None:
         """Begin with the state q, v (n_q,)."""
         self.state[: self.n_q], self.state[self.n_q :] = q, v
-        for i in range(2 * self.n_q):
-            self.q[i] = self.q0[i]
+        copy(self.q, self.q0, 2 * self.n_q)
 
     def noise(self, c: int) -> float:
         """Rounding of the gap velocity of a contact, that of the earlier impacts of the same instant included.
@@ -79,8 +79,7 @@ class Mechanism(Contacts):
 
     def move(self, i: int, p: float) -> None:
         """The same, not counted."""
-        for j in range(self.n_q):
-            self.v[j] += self.MR[i * self.n_q + j] * p
+        add(self.v, p, after(self.MR, i * self.n_q), self.n_q)
         for c in range(self.n_c):
             k = self.n_j + c
             if self.D[k * self.n_r + i] != 0.0:

@@ -30,7 +30,7 @@ from lcpstep.events.rows.held import constrain, solve_held
 from lcpstep.kernels.quadratic import accumulation, first_zero
 from lcpstep.kernels.record import Record
 from lcpstep.kernels.tally import Tally
-from lcpstep.kernels.vectors import clear, copy, largest
+from lcpstep.kernels.vectors import clear, copy, copy_indices, largest
 from lcpstep.pointers import abs, max, min
 
 CHECKED = 1e-10  # of the largest force: a pull that is no rounding
@@ -152,8 +152,7 @@ def disturbs(s: Contacts) -> bool:
         s.tried[c] = s.mode[c]
         s.mode[c] = s.mode_closed(c) if s.left[c] >= 0.0 else s.mode[c]
     found = let_go_pulling(s) and (throws_off(s) or drives_others(s))
-    for c in range(s.n_c):
-        s.mode[c] = s.tried[c]
+    copy_indices(s.mode, s.tried, s.n_c)
     hold_modes(s)
     return found
 

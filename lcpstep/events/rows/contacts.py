@@ -24,7 +24,7 @@ from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.together import gap_rounding
-from lcpstep.kernels.vectors import clear, copy, product
+from lcpstep.kernels.vectors import add, clear, copy, product
 from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
 
 STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
@@ -110,8 +110,7 @@ class Contacts(Rows):
 
     def push(self, i: int, p: float) -> None:
         """Apply the impulse p on row i, and count it; what is taken from velocities again leaves rounding."""
-        for j in range(self.n_q):
-            self.v[j] += self.MR[i * self.n_q + j] * p
+        add(self.v, p, after(self.MR, i * self.n_q), self.n_q)
         for k in range(self.n_c + self.n_t):
             self.terms[k] = max(self.terms[k], NOISE * abs(self.D[(self.n_j + k) * self.n_r + i] * p))
         add_impulse(self, i, p)

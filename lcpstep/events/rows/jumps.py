@@ -15,7 +15,7 @@ from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.clock import NUDGE
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.sudden import MORE, SUDDEN, coarseness
-from lcpstep.kernels.vectors import product
+from lcpstep.kernels.vectors import add, product
 from lcpstep.pointers import Doubles, abs, after, max
 
 TOLERANCES = 8.0  # of a velocity: what a step leaves of a row held
@@ -106,8 +106,7 @@ def go_beyond(s: Rows, q: Doubles, v: Doubles) -> bool:
     if s.low != s.jump:
         return False
     margin = 2.0 * max(NUDGE * max(abs(s.t0), s.scale), coarseness(q, v, s.n_q))
-    for j in range(s.n_q):
-        q[j] = q[j] + margin * v[j]
+    add(q, margin, v, s.n_q)
     return True
 
 
@@ -134,8 +133,7 @@ def hidden_by_rounding(s: Rows, motion: RungeKutta, i: int) -> float:
     if s.fixed or not motion.step(s.t0, s.sudden.low):
         return 0.0
     v, coarse = after(motion.y_new, s.n_q), coarseness(motion.y_new, after(motion.y_new, s.n_q), s.n_q)
-    for j in range(s.n_q):
-        motion.y_new[j] += 4.0 * coarse * v[j]
+    add(motion.y_new, 4.0 * coarse, v, s.n_q)
     beyond = (velocity(s, i, t, motion.y_new) - s.sudden.middle) * (s.sudden.later - s.sudden.middle) > 0.0
     return coarse if beyond else 0.0
 

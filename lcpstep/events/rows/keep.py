@@ -19,6 +19,7 @@ from lcpstep.events.rows.contacts import Contacts, add_impulse, of_tangent, rubs
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.record import Record
 from lcpstep.kernels.tally import Tally
+from lcpstep.kernels.vectors import add
 from lcpstep.pointers import Doubles, abs, after, max
 
 
@@ -53,8 +54,7 @@ def put_on_account(s: Contacts) -> None:
     """Impulses by row in `multiplier` belong to contacts that are closed from here on, not to this instant."""
     for i in range(s.n_j):
         add_impulse(s, i, s.multiplier[i])
-    for i in range(s.n_c + s.n_t):
-        s.owed[i] = s.owed[i] + s.multiplier[s.n_j + i]
+    add(s.owed, 1.0, after(s.multiplier, s.n_j), s.n_c + s.n_t)
 
 
 def keep_event(s: Contacts, record: Record, t: float) -> None:

@@ -21,7 +21,7 @@ import numpy as np
 
 from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.linear import factorise, solve
-from lcpstep.kernels.vectors import copy, largest, product, size_of_product
+from lcpstep.kernels.vectors import add, clear, copy, largest, product, size_of_product
 from lcpstep.pointers import Doubles, Indices, abs, after, inf, max
 from lcpstep.stepping.steps import CONTRADICTION, RESOLUTION
 
@@ -139,8 +139,7 @@ def solve_joints(e: Elimination, out: Doubles) -> None:
     for _ in range(REFINEMENTS):
         apply_inverse(e)
         worst = largest = 0.0
-        for i in range(n):
-            e.x[i] += e.d[i]
+        add(e.x, 1.0, e.d, n)
         for i in range(n):
             e.r[i], size = e.y[i], abs(e.y[i])
             for j in range(n):
@@ -161,8 +160,7 @@ def apply_inverse(e: Elimination) -> None:
     if not e.redundant:
         solve(e.F, e.pivots, e.d, n)
         return
-    for i in range(n):
-        e.d[i] = 0.0
+    clear(e.d, n)
     for k in range(n):
         if e.values[k] > NEGLIGIBLE:
             share = 0.0
@@ -242,8 +240,7 @@ def distribute(
 ) -> None:
     """Impulses p of all n rows: those of the contacts ids[:n_a], and of the joints ids[n_a:n_k] that go with them."""
     n_j = n_k - n_a
-    for i in range(n):
-        p[i] = 0.0
+    clear(p, n)
     for k in range(n_a):
         p[ids[k]] = solution[k]
     for j in range(n_j):

@@ -36,8 +36,7 @@ def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) ->
     n_k = choose_resting(w)
     if n_k == 0:
         return True
-    for c in range(w.n_c):
-        w.fall[c] = 0.0
+    clear(w.fall, w.n_c)
     rest = w.end - w.sigma
     place = answered(plan, w, place)
     W = after(plan.WA, place * w.n_c * w.n_c) if place != INERTIA else w.W

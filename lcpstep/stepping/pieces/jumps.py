@@ -12,7 +12,7 @@ import cython
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.sudden import coarseness
-from lcpstep.kernels.vectors import product
+from lcpstep.kernels.vectors import add, product
 from lcpstep.pointers import abs, max, min
 from lcpstep.stepping.pieces.codes import CLOSED
 from lcpstep.stepping.pieces.corners import JUMP
@@ -54,8 +54,7 @@ def hidden_by_rounding(way: Steps, w: Work, t: float, i: int) -> float:
         return 0.0
     measure_rows(way, w, t, w.sudden.low)
     coarse = coarseness(w.q_try, w.v_try, w.n_q)
-    for j in range(w.n_q):
-        w.q_try[j] += 4.0 * coarse * w.v_try[j]
+    add(w.q_try, 4.0 * coarse, w.v_try, w.n_q)
     gap_rates(way.m, within(w, t + w.sudden.low), w.q_try, w.v_try, w.G_try, w.gap_t_try)
     beyond = (velocity(w, i) - w.sudden.middle) * (w.sudden.later - w.sudden.middle) > 0.0
     return coarse if beyond else 0.0

@@ -7,7 +7,7 @@ import cython
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.record import Record
-from lcpstep.kernels.vectors import copy
+from lcpstep.kernels.vectors import add, copy
 from lcpstep.pointers import max, min
 from lcpstep.stepping.pieces.smooth import look_along, refactor, settle_state
 from lcpstep.stepping.pieces.state import Plan, Work
@@ -53,13 +53,11 @@ def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau
             bent = w.q[i] - q - tau * (v + 0.5 * tau * a)
             w.q_try[i] = q + s * (v + 0.5 * s * a) + r * r * r * bent
             w.v_try[i] = v + s * a + r * r * (w.v[i] - v - tau * a)
-        for c in range(n_c):
-            w.impulse[c] += (r - share) * w.residual[c]
+        add(w.impulse, r - share, w.residual, n_c)
         share = r
         settle_state(m, plan, w, t, w.q_try)
         record.keep_awaited(w.q_try, w.v_try, w.impulse)
-    for c in range(n_c):
-        w.impulse[c] += (1.0 - share) * w.residual[c]
+    add(w.impulse, 1.0 - share, w.residual, n_c)
     if not plan.constant:  # `settle_state` has looked elsewhere
         gap_rates(m, within(w, base + tau), w.q, w.v, w.G, w.gap_t)
         refactor(m, w, base + tau)

@@ -13,7 +13,7 @@ import cython
 from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.record import Record
-from lcpstep.kernels.vectors import copy, finite
+from lcpstep.kernels.vectors import clear, copy, finite
 from lcpstep.pointers import inf, max
 from lcpstep.stepping.pieces.begin import begin_motion
 from lcpstep.stepping.pieces.carried import put_kept_back
@@ -240,8 +240,7 @@ def begin_step(m: Model, plan: Plan, w: Work) -> None:
         remeasure(m, plan, w)
     if w.events > 0:
         w.settled = w.stalled = 0.0
-        for i in range(w.n_q):
-            w.swing[i] = 0.0
+        clear(w.swing, w.n_q)
     w.sigma = w.end = 0.0
     w.events, w.under_way = 0, True
     for c in range(w.n_c):

@@ -22,7 +22,7 @@ from lcpstep.kernels.dynamics import gap_rates, gaps, obstacle
 from lcpstep.kernels.linear import grow_factor, solve_factored
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.turn import Turn
-from lcpstep.kernels.vectors import add, copy, product
+from lcpstep.kernels.vectors import add, clear, copy, product
 from lcpstep.pointers import Doubles, after, max
 from lcpstep.stepping.pieces.codes import CLOSED
 from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, respond
@@ -126,8 +126,7 @@ def press(w: Work, out: Doubles, share: float) -> None:
     obstacles' own w.bias is taken out of both.
     """
     n_c, n_k, doubt = w.n_c, w.pivots[w.n_c], 0.0
-    for c in range(n_c):
-        w.p[c] = 0.0
+    clear(w.p, n_c)
     for k in range(n_k):
         doubt = max(doubt, w.doubt[k])
     add_forces(w, out, n_k)

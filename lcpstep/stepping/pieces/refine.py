@@ -23,7 +23,7 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, clear, copy, largest, product
 from lcpstep.lcp.kernel import solve_small
 from lcpstep.lcp.status import SOLVED
-from lcpstep.pointers import Doubles, abs, after, max, min
+from lcpstep.pointers import Doubles, abs, after, max
 from lcpstep.stepping.pieces.codes import EPS, ROUNDING
 from lcpstep.stepping.pieces.independent import bear_on_independent
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
@@ -77,13 +77,10 @@ def all_pressed(w: Work, W: Doubles, n: int) -> bool:
     for k in range(n):
         w.z[k] = -w.b[k]
     solve_factored(w.problem, n, n, w.z)
-    largest = 0.0
+    least, pressed = PULLS * largest(w.z, 0.0, n), True
     for k in range(n):
-        largest = max(largest, w.z[k])
-    least = largest
-    for k in range(n):
-        least = min(least, w.z[k])
-    return least > PULLS * largest
+        pressed = pressed and w.z[k] > least
+    return pressed
 
 
 def still_pressed(m: Model, plan: Plan, w: Work, W: Doubles, n: int, guess: int) -> int:
@@ -95,11 +92,9 @@ def still_pressed(m: Model, plan: Plan, w: Work, W: Doubles, n: int, guess: int)
     for i in range(n_k):
         w.change[i] = -w.b[w.place[i]]
     solve_factored(w.problem, n, n_k, w.change)
-    largest = 0.0
+    least = PULLS * largest(w.change, 0.0, n_k)
     for i in range(n_k):
-        largest = max(largest, w.change[i])
-    for i in range(n_k):
-        if not w.change[i] > PULLS * largest:
+        if not w.change[i] > least:
             return 0
     i = 0
     for k in range(n):
@@ -259,11 +254,9 @@ def keep_closed(w: Work, W: Doubles, MG: Doubles, n: int) -> bool:
 
 def presses(w: Work, W: Doubles, n: int) -> bool:
     """Whether z of an answer found without the solver pulls nowhere, and leaves no contact closing."""
-    largest = 0.0
-    for k in range(n):
-        largest = max(largest, w.z[k])
+    most = largest(w.z, 0.0, n)
     for k in range(n):
         c, z = w.chosen[k], w.z[k]
-        if not z >= -PULLS * largest or w.residual[k] < -PULLS * (abs(w.b[k]) + W[c * w.n_c + c] * abs(z)):
+        if not z >= -PULLS * most or w.residual[k] < -PULLS * (abs(w.b[k]) + W[c * w.n_c + c] * abs(z)):
             return False
     return True

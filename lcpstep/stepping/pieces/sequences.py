@@ -12,6 +12,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.vectors import clear
 from lcpstep.pointers import abs
 from lcpstep.stepping.pieces.codes import CLOSED, OPEN, ROUNDING
 from lcpstep.stepping.pieces.magnitudes import faint
@@ -73,8 +74,7 @@ def choose_collapsing(plan: Plan, w: Work, first: int, n_s: int) -> int:
     brought to rest now would keep the speed of its last rebound, and go for good where nothing presses it then.
     """
     n_c = w.n_c
-    for c in range(n_c):
-        w.p[c] = 0.0
+    clear(w.p, n_c)
     for k in range(n_s):
         w.p[w.chosen[k]] = 1.0  # chosen already
     known, u, W = n_s, w.rate[first], w.W[first * n_c + first]

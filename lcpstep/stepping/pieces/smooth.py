@@ -245,9 +245,8 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
     n, t_next = w.n_q, t + tau
     look_along(w, tau)
     copy(w.q, w.q_try, n)
-    for c in range(w.n_c):
-        w.impulse[c] += 0.5 * tau * w.force_now[c]
-        w.pushed[c] += 0.5 * tau * w.force_now[c]
+    add(w.impulse, 0.5 * tau, w.force_now, w.n_c)
+    add(w.pushed, 0.5 * tau, w.force_now, w.n_c)
     if w.closed_now > 0:
         if not refactor(m, w, t_next):
             return False

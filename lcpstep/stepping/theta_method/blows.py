@@ -19,8 +19,8 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import clear, copy, copy_indices, largest, product, size_of_product
-from lcpstep.pointers import max, min
+from lcpstep.kernels.vectors import add, clear, copy, copy_indices, largest, product, size_of_product
+from lcpstep.pointers import after, max, min
 from lcpstep.stepping.steps import LEFT, RESOLUTION, TURNS
 from lcpstep.stepping.theta_method.codes import FINISHED, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Blows, Plan, Rows, State
@@ -66,8 +66,7 @@ def one_after_another(
         if code != FINISHED:
             all_of_them(s, c, b)
             return code
-        for i in range(c.n):
-            b.p[i] += c.p[i]
+        add(b.p, 1.0, c.p, c.n)
         after_blow(plan, s, c, b)
     all_of_them(s, c, b)
     pose(m, plan, s, c, s.active, t_next, True)
@@ -111,8 +110,7 @@ def after_blow(plan: Plan, s: State, c: Rows, b: Blows) -> None:
     b.v, b.u, b.sliding = b.own_v, b.own_u, b.own_sliding
     for k in range(n_k):
         row = c.problem.ids[k]
-        for j in range(n):
-            b.v[j] += plan.X[row * n + j] * c.p[row]
+        add(b.v, c.p[row], after(plan.X, row * n), n)
     for k in range(b.n_a):
         i = b.ids[k]
         b.u[i] = product(c.H, b.v, i, n) + c.H_t[i]

@@ -20,7 +20,7 @@ from lcpstep.kernels.acceleration import factor_mass, response
 from lcpstep.kernels.coulomb import solve_contacts
 from lcpstep.kernels.dynamics import gap_rates, gaps
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import copy
+from lcpstep.kernels.vectors import add, copy
 from lcpstep.pointers import abs, after, inf, max
 from lcpstep.stepping.constraints.directions import mobilities
 from lcpstep.stepping.constraints.joint_rows import NEARLY, arrived, distribute, eliminate
@@ -99,8 +99,7 @@ def correct(m: Model, s: State, c: Rows, t: float, astray: bool) -> bool:
     distribute(c.elimination, c.problem.impulse, c.problem.ids, n_a, n_k, c.push, c.n)
     for k in range(n_k):
         i = c.problem.ids[k]
-        for j in range(s.n_q):
-            s.next_q[j] += c.Y[i * s.n_q + j] * c.push[i]
+        add(s.next_q, c.push[i], after(c.Y, i * s.n_q), s.n_q)
     return True
 
 

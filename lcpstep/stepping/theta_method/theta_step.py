@@ -30,7 +30,7 @@ from lcpstep.kernels.dynamics import external_force, gap_rates, gaps
 from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.record import Record
-from lcpstep.kernels.vectors import clear, copy, finite, product
+from lcpstep.kernels.vectors import add, clear, copy, finite, product
 from lcpstep.pointers import abs, after, whole
 from lcpstep.stepping.constraints.joint_rows import joints_hold
 from lcpstep.stepping.steps import RESOLUTION, RESTING, UNTOLD
@@ -81,8 +81,7 @@ def take_step(
     if code != FINISHED:
         return code
     log_events(m, s, c, record, t_next)
-    for i in range(c.n):
-        s.impulse[i] += c.p[i]
+    add(s.impulse, 1.0, c.p, c.n)
     return project(m, plan, s, c, t_next) if c.projected else FINISHED
 
 
