@@ -96,6 +96,7 @@ class Integrated(EventRun):
         shape = (1, scene.n_q) if constant else (7, 2 * scene.n_q)  # an acceleration, or dense output
         super().__init__(method, scene, kept, Recorder(scene.n_q, columns, kept, shape if kept.all else None))
         self.clock, self.motion, self.scan, self.constant = clock, motion, scan, constant
+        clock.record, clock.tally = self.recorder.record, self.tally
 
     @property
     def closed_ones(self) -> list[int]:

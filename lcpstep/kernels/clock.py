@@ -13,8 +13,6 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles
-from lcpstep.kernels.record import Record
-from lcpstep.kernels.tally import Tally
 from lcpstep.pointers import abs, inf, max, min
 
 RESOLUTION = 2.0**-52
@@ -31,6 +29,7 @@ class Clock:
     period               of the corners
     last_event           time of it
     jump                 the corner found last that the scene does not name
+    record, tally        what is kept of the motion, and counted; None of one that is only asked
 
     Parameters
     ----------
@@ -44,6 +43,8 @@ class Clock:
         self.period, self.last_event, self.t_end = period, -inf, t_span[1]
         self.scale = period if period < inf else t_span[1] - t_span[0]
         self.low, self.high, self.jump = inf, -inf, -inf
+        self.record: Any = None
+        self.tally: Any = None
 
     def after(self, tau: float) -> float:
         """The time tau after the base; what rounding takes from it is kept for the next base.
@@ -61,12 +62,10 @@ class Clock:
         self.t0 = t
         self.t0_rest, self.rest = self.rest, 0.0
 
-    def log(
-        self, record: Record, tally: Tally, t: float, c: int, kind: int, before: float, later: float, p: float
-    ) -> None:
+    def log(self, t: float, c: int, kind: int, before: float, later: float, p: float) -> None:
         """Note an event of contact c; those that pass without the time going on are counted."""
-        record.note(t, c, before, later, p, kind)
-        tally.add_event(abs(self.t0 - self.last_event) <= 4.0 * RESOLUTION * abs(self.t0))
+        self.record.note(t, c, before, later, p, kind)
+        self.tally.add_event(abs(self.t0 - self.last_event) <= 4.0 * RESOLUTION * abs(self.t0))
         self.last_event = self.t0
 
     def untold(self, length: float) -> float:

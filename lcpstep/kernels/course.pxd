@@ -5,6 +5,5 @@ cdef class Stepwise(Course):
     cdef Py_ssize_t first, last
 
 cdef class Events(Course):
-    cdef Record record
-    cdef Tally tally
+    cdef Clock clock
     cdef Py_ssize_t room

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.kernels.record import Record
+from lcpstep.kernels.clock import Clock
 from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
-from lcpstep.kernels.tally import Tally
 
 DUE, AHEAD, ARRIVED = range(3)  # stages
 
@@ -70,19 +69,19 @@ class Stepwise(Course):
 class Events(Course):
     """The same from event to event, of what has a record and a tally.
 
-    record, tally   what is kept, and counted
-    room            events that one round may note
+    clock   which has what is kept, and counted
+    room    events that one round may note
 
     Parameters
     ----------
-    record, tally, room : as above
+    clock, room : as above
     """
 
-    def __init__(self, record: Record, tally: Tally, room: int) -> None:
-        self.record, self.tally, self.room = record, tally, room
+    def __init__(self, clock: Clock, room: int) -> None:
+        self.clock, self.room = clock, room
 
     def refusal(self) -> int:
         """Whether buffers are full, or there were too many events."""
-        if self.record.full(self.room):
+        if self.clock.record.full(self.room):
             return BUFFER_FULL
-        return TOO_MANY_EVENTS if self.tally.too_many() else DONE
+        return TOO_MANY_EVENTS if self.clock.tally.too_many() else DONE

@@ -48,6 +48,17 @@ def solve(A: Doubles, pivots: Indices, x: Doubles, n: int) -> None:
         x[k] /= A[k * n + k]
 
 
+def invert_matrix(A: Doubles, pivots: Indices, scale: float, column: Doubles, out: Doubles, n: int) -> None:
+    """Out <- scale A^-1; A becomes its factors. column : (n,)   work space."""
+    factorise(A, pivots, n)
+    for j in range(n):
+        for i in range(n):
+            column[i] = scale if i == j else 0.0
+        solve(A, pivots, column, n)
+        for i in range(n):
+            out[i * n + j] = column[i]
+
+
 def positive_definite(A: Doubles, n: int) -> bool:
     """Whether a symmetric A is positive definite: Cholesky's method, A = L L^T, in the lower half of A."""
     for k in range(n):

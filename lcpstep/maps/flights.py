@@ -13,7 +13,8 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.flight.contact import IMPACT, ON_THE_SURFACE, STICK
+from lcpstep.events.codes import IMPACT, STAYS_CLOSED
+from lcpstep.events.flight.contact import ON_THE_SURFACE
 from lcpstep.events.flight.loop import Course
 from lcpstep.events.flight.motion import Flight
 from lcpstep.kernels.layout import COLUMNS
@@ -124,7 +125,7 @@ def note_events(r: Runs, i: int, k: int) -> None:
         event = after(r.s.record.events, e * COLUMNS)
         if event[5] == IMPACT:
             r.answers.note_impact(i, k, event[0], event[2], event[3])
-        elif event[5] == STICK and event[0] > r.answers.t_start:
+        elif event[5] == STAYS_CLOSED and event[0] > r.answers.t_start:
             r.answers.note_landing(i, k, event[0])
 
 

@@ -31,7 +31,7 @@ class Lockstep:
     def __init__(self, scene: Scene, method: Moreau) -> None:
         self.scene, self.method = scene, method
         self.model, joints, tangents = models(scene)
-        self.rows = rows(scene, joints, tangents, projected=False)
+        self.rows = rows(scene, joints, tangents, projected=False, external=False)
 
     @property
     def usable(self) -> bool:

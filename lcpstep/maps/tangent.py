@@ -15,7 +15,7 @@ from typing import Any
 import cython
 
 from lcpstep.arrays import doubles, indices
-from lcpstep.events.flight.contact import IMPACT, STICK
+from lcpstep.events.codes import IMPACT, STAYS_CLOSED
 from lcpstep.events.flight.motion import Flight
 from lcpstep.events.flight.oscillator import fundamental
 from lcpstep.events.flight.rest import alpha_at
@@ -63,7 +63,7 @@ def along_events(s: Flight, record: Record, J: Doubles, last: float) -> float:
             carry(s, J, t - last)
             strike(s, J, t, event[2])
             last = t
-        elif event[5] == STICK:
+        elif event[5] == STAYS_CLOSED:
             clear_tangent(J, 0.0)
             last = t
     return last

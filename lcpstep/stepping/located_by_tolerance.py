@@ -27,7 +27,7 @@ from lcpstep.stepping.pieces.codes import (
     TOO_MANY_EVENTS,
 )
 from lcpstep.stepping.pieces.times import driven_by
-from lcpstep.stepping.step_control import follow_on, stamp
+from lcpstep.stepping.step_control import stamp
 
 EARLY = 1.0 / 32.0  # of a step: an event before it leaves nothing to compare
 NEAR = 3.0  # errors of a gap: from where on it may have closed
@@ -60,7 +60,8 @@ class Attempts(Parts):
                 end, entire, until = start + until, False, inf
         # Nothing of a step comes after the multiple that it ends at, or before what was kept, by rounding
         stamp(self.record, self.row, self.event, self.to_time, self.to_time)
-        follow_on(self.record, self.row)
+        for k in range(max(self.row, 1), self.record.row):
+            self.record.t[k] = max(self.record.t[k], self.record.t[k - 1])
         self.full = self.two.code == BUFFER_FULL and self.event + self.row > 0
         if not self.full:
             self.weigh(end - start)

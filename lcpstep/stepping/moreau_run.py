@@ -41,7 +41,7 @@ class MoreauRun(StepRun):
 
     def __init__(self, method: Moreau, scene: Scene, kept: Kept) -> None:
         self.model, joints, tangents = models(scene)
-        self.rows = rows(scene, joints, tangents, method.projected)
+        self.rows = rows(scene, joints, tangents, method.projected, method.lcp != "lemke")
         flat = self.model.flat and joints.flat and tangents.flat
         self.constant = flat and self.model.linear and not method.projected
         self.place = State(scene.q0, scene.v0, scene.n_c, self.rows.n)
@@ -50,8 +50,8 @@ class MoreauRun(StepRun):
         super().__init__(method, scene, kept, recorder, PORTION)
         self.impulse = self.place.arrays["impulse"]
         self.slack = RESTING * (places(self.model, scene.q0, scene.v0, method.h) or 1.0)
-        made, external = self.plan_for(self.stretches[0][0]), method.lcp != "lemke"
-        self.loop = loop.Steps(self.model, made, self.place, self.rows, recorder.record, external)
+        made = self.plan_for(self.stretches[0][0])
+        self.loop = loop.Steps(self.model, made, self.place, self.rows, recorder.record)
 
     def begin(self) -> int:
         """The initial state; a code."""
@@ -145,7 +145,7 @@ class MoreauRun(StepRun):
         return super().why(code)
 
 
-def rows(scene: Scene, joints: Model, tangents: Model, projected: bool) -> Rows:
+def rows(scene: Scene, joints: Model, tangents: Model, projected: bool, external: bool) -> Rows:
     """Joints and tangents of a scene, with the rows of a step."""
     n_c, contacts, r_T = scene.n_c, scene.contacts, np.zeros(scene.n_c)
     in_turn = False
@@ -155,7 +155,8 @@ def rows(scene: Scene, joints: Model, tangents: Model, projected: bool) -> Rows:
     n = n_c + tangents.n_c + joints.n_c
     warm = n == n_c and not projected
     problem = ContactProblem(np.zeros(n_c), friction is not None, n, warm)
-    return Rows(joints, tangents, n_c, tangents.n_c, coefficients(scene), r_T, in_turn, projected, problem)
+    bodies = joints, tangents, n_c, tangents.n_c
+    return Rows(*bodies, coefficients(scene), r_T, in_turn, projected, external, problem)
 
 
 def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool) -> Plan:

@@ -250,9 +250,3 @@ def stamp(r: Record, row: int, event: int, late: float, t: float) -> None:
     for k in range(event, r.event):
         if r.events[k * COLUMNS] >= late:
             r.events[k * COLUMNS] = t
-
-
-def follow_on(r: Record, row: int) -> None:
-    """Rows from this one on are not earlier than the one before, as the sum of two times may be by rounding."""
-    for k in range(row if row > 0 else 1, r.row):
-        r.t[k] = max(r.t[k], r.t[k - 1])

@@ -43,7 +43,7 @@ class Course(Events):
     """Arcs of one contact that stays closed; s : Arc."""
 
     def __init__(self, s: Arc) -> None:
-        super().__init__(s.record, s.tally, SLACK)
+        super().__init__(s, SLACK)
         self.s = s
 
     def stage(self, goal: int) -> int:
@@ -85,7 +85,7 @@ def begin(s: Arc) -> None:
 
 def note(s: Arc, kind: int) -> None:
     """Log an event at the base time; the sliding velocity is zero there."""
-    s.log(s.record, s.tally, s.t0, 0, kind, 0.0, 0.0, 0.0)
+    s.log(s.t0, 0, kind, 0.0, 0.0, 0.0)
 
 
 def decide(s: Arc) -> None:
@@ -207,12 +207,6 @@ def keep_times(s: Arc, stop: float, last: bool) -> None:
         t = s.record.awaited()
         keep(s, t - s.t0, t)
         s.record.next_time += 1
-
-
-@cython.ccall
-def show(s: Arc) -> None:
-    """Leave the state at the time reached in `state`; called from Python."""
-    state_at(s, s.now - s.t0)
 
 
 @cython.ccall

@@ -1,11 +1,6 @@
-from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.tally cimport Tally
-
 cdef class Arc(Clock):
     cdef readonly object state
     cdef object space
-    cdef readonly Record record
-    cdef readonly Tally tally
     cdef readonly double delta, w2, f0, X, Y, Omega, fc, fs, slip, slip_cosine, slip_sine, belt
     cdef readonly double pull, most, normal, mass, direction, z, dz, phi, end, side
     cdef readonly double now, stride, rtol, atol, paid, friction

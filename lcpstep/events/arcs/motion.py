@@ -182,6 +182,8 @@ def bend_at(s: Arc, tau: float) -> float:
     return bend
 
 
+@cython.ccall
+@cython.nogil
 def state_at(s: Arc, tau: float) -> tuple[float, float]:
     """Z and z' at tau after the base; the state into q, v."""
     z, dz = s.z, s.dz

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.events.arcs.line import Line, line_of
-from lcpstep.events.arcs.loop import Course, evaluate, show
-from lcpstep.events.arcs.motion import Arc
+from lcpstep.events.arcs.loop import Course, evaluate
+from lcpstep.events.arcs.motion import Arc, state_at
 from lcpstep.events.running import Between, EventRun, without_impulses
 from lcpstep.events.scan import PER_PERIOD
 from lcpstep.recording import Kept, Recorder, States
@@ -52,7 +52,7 @@ class ArcRun(EventRun):
     @property
     def state(self) -> tuple[Array, Array]:
         """Last known q and v."""
-        show(self.arc)
+        state_at(self.arc, self.arc.now - self.arc.t0)
         return self.arc.state[0], self.arc.state[1]
 
     def begin(self) -> int:

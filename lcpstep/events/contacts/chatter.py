@@ -40,13 +40,11 @@ from lcpstep.events.rows.equations import size_of
 from lcpstep.events.rows.held import constrain
 from lcpstep.events.rows.keep import put_on_account
 from lcpstep.kernels.clock import NOISE
-from lcpstep.kernels.record import Record
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import copy, product
 from lcpstep.pointers import abs, after, max, nan
 
 
-def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
+def close_small(s: Rubbing, t: float) -> bool:
     """Close the contacts whose further impacts stay below the tolerance; whether there were any.
 
     Modes must be obeyed, everything measured at the base.
@@ -62,7 +60,7 @@ def close_small(s: Rubbing, record: Record, tally: Tally, t: float) -> bool:
         return False
     for c in range(s.n_c):
         if s.rows.left[c] >= 0.0:
-            tell_over(s.rows, record, tally, c)
+            tell_over(s.rows, c)
             close(s, c)
     for c in range(s.n_c):  # of those that the others, closed, have left without speed the forces decide
         if just_opened(s.rows, c):

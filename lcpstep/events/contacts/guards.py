@@ -16,7 +16,7 @@ from lcpstep.events.contacts.held import right_hand_side
 from lcpstep.events.contacts.hops import begin_hops, first_landing
 from lcpstep.events.contacts.loose import forget_strays, notice
 from lcpstep.events.contacts.state import GUARDS, Rubbing
-from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
+from lcpstep.events.hybrid.roots import DEGREE, NONE, SAMPLES, convert, first_rise, taylor
 from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
 from lcpstep.events.rows.equations import renew_rates, size_of
 from lcpstep.events.rows.held import is_held
@@ -25,7 +25,6 @@ from lcpstep.kernels.dop853 import STAGES
 from lcpstep.kernels.vectors import copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, max, min
 
-SAMPLES = DEGREE + 1 + CHECKS
 PARTS = 64  # of a step, at most, in which guards are polynomials
 MOST_PARTS, UNSEEN = 4096, 1e-6  # the same where a gap turns faster than the motion: by so much of it
 RESOLVED = 1e-8  # difference of guard and polynomial, relative to its largest value

@@ -16,22 +16,18 @@ from lcpstep.events.contacts.equations import measure, renew_friction
 from lcpstep.events.contacts.parting import approaches, let_go, rejoin
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import measure_velocities, sliding, still, stop_rows
-from lcpstep.events.rows.cycle import fades, look_back, recurs, sum_up
+from lcpstep.events.rows.cycle import ROUNDS, fades, look_back, recurs, sum_up
 from lcpstep.events.rows.held import hold_joints
 from lcpstep.events.rows.problem import fill, list_unknowns, row_of
 from lcpstep.kernels.coulomb import solve_contacts
 from lcpstep.kernels.energetic import strike_in_turn
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.recurrence import FOR_EVER, looks_back
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import clear, copy_indices
 from lcpstep.pointers import abs, after, inf, max, min
 
-ROUNDS = 100_000  # problems of impacts at one instant
 
-
-def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+def jump(s: Rubbing, t: float) -> int:
     """Impacts until no contact on its surface approaches; those that are left without speed are closed.
 
     Impacts that go to and fro are summed where they fade in proportion, and have no end where all returns as it was;
@@ -39,17 +35,17 @@ def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     """
     most = ROUNDS if s.n_t == 0 else 2 * ROUNDS
     if s.rounds == 0:
-        s.stalled = tally.stalled
+        s.stalled = s.clock.tally.stalled
     while s.rounds < most:
         if not approaches(s):
             rejoin(s)
             find_free(s)
-            if tally.stalled > s.stalled + 1:  # the impacts of one instant count as one
-                tally.stalled = s.stalled + 1
+            if s.clock.tally.stalled > s.stalled + 1:  # the impacts of one instant count as one
+                s.clock.tally.stalled = s.stalled + 1
             return DONE
-        if record.full(4 * s.n_c + 4):
+        if s.clock.record.full(4 * s.n_c + 4):
             return BUFFER_FULL
-        if tally.events > tally.max_events:
+        if s.clock.tally.events > s.clock.tally.max_events:
             return TOO_MANY_EVENTS
         if s.rounds > 0 and not renew_friction(s, t):
             return NOT_FINITE
@@ -58,7 +54,7 @@ def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
             if not fades(s.rows):
                 return TOO_MANY_EVENTS if can_rest(s) else NO_IMPULSES
         elif ratio > 0.0:
-            sum_up(s.rows, record, tally, ratio)
+            sum_up(s.rows, ratio)
         else:
             if looks_back(s.rounds):
                 look_back(s.rows)
@@ -66,21 +62,21 @@ def jump(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
                 return NOT_FINITE
             s.rounds += 1
             # The last ones of what is held from all sides may leave speeds that but rounding contradicts
-            if not strike(s, record, tally, t, s.rounds > ROUNDS) and not (s.rounds > 1 and fades(s.rows)):
+            if not strike(s, t, s.rounds > ROUNDS) and not (s.rounds > 1 and fades(s.rows)):
                 return NO_IMPULSES
     return TOO_MANY_EVENTS
 
 
-def strike(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) -> bool:
+def strike(s: Rubbing, t: float, plastic: bool) -> bool:
     """The impact of contacts that are closed or approach, or a plastic one of all that touch; False: none found.
 
     What is held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, the
     impact is a plastic one.
     """
     look_before(s)
-    if strike_together(s, record, tally, t, plastic):
+    if strike_together(s, t, plastic):
         return True
-    return not plastic and strike_together(s, record, tally, t, True)
+    return not plastic and strike_together(s, t, True)
 
 
 def look_before(s: Rubbing) -> None:
@@ -117,12 +113,12 @@ def take_for_none(s: Rubbing, c: int) -> None:
         s.velocity[T] = 0.0
 
 
-def strike_together(s: Rubbing, record: Record, tally: Tally, t: float, plastic: bool) -> bool:
+def strike_together(s: Rubbing, t: float, plastic: bool) -> bool:
     """`strike` by one of the laws, from the velocities before it."""
     n_a, n_f = gather(s, plastic)
     if not find_impulses(s, n_a, n_f, plastic):
         return False
-    strike_with(s, record, tally, t, n_a, n_f, -1, plastic)
+    strike_with(s, t, n_a, n_f, -1, plastic)
     return True
 
 
@@ -144,9 +140,7 @@ def pose(s: Rubbing) -> tuple[int, int]:
     return n_a, n_f
 
 
-def strike_with(
-    s: Rubbing, record: Record, tally: Tally, t: float, n_a: int, n_f: int, jammed: int, plastic: bool
-) -> None:
+def strike_with(s: Rubbing, t: float, n_a: int, n_f: int, jammed: int, plastic: bool) -> None:
     """Apply the impulses found, and close or open the contacts by the velocities that they leave.
 
     A plastic one stands for impacts without end, and is told as such where the law of a contact is another.
@@ -165,7 +159,7 @@ def strike_with(
             kind = ACCUMULATION if plastic and s.model.restitution[c] > 0.0 else IMPACT
             kind = JAM if c == jammed else kind
             before = 0.0 if s.thrown[c] == 1 else s.before[c]  # its obstacle takes it along
-            s.clock.log(record, tally, t, c, kind, before, u, s.problem.impulse[a])
+            s.clock.log(t, c, kind, before, u, s.problem.impulse[a])
             s.rows.since[c], s.rows.struck[c], s.carried[c] = t - s.rows.struck[c], t, 0
         s.mode[c], s.thrown[c] = OPEN if u > s.terms[c] else SLIDES, 0
 
@@ -191,7 +185,7 @@ def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
     return solve_contacts(s.problem, n_a, n_f)
 
 
-def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+def jam(s: Rubbing, t: float) -> int:
     """The impact without collision of the contact that jams (`culprit`), at the base state; a status.
 
     Its force grows beyond all bounds while it slides: an impulse that presses it together until the sliding ends, and
@@ -199,7 +193,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     """
     if not measure(s, t, s.y):
         return NOT_FINITE
-    if record.full(4 * s.n_c + 4):
+    if s.clock.record.full(4 * s.n_c + 4):
         return BUFFER_FULL
     hit, first = s.rows.culprit, -1
     clear(s.instant, s.n_r)
@@ -218,7 +212,7 @@ def jam(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
     if not (done and s.problem.impulse[first] > 0.0):
         return PAINLEVE_INCONSISTENT
     s.jams += 1
-    strike_with(s, record, tally, t, n_a, n_f, hit, False)
+    strike_with(s, t, n_a, n_f, hit, False)
     clear(s.problem.slow, s.n_c)
     s.rows.next = JUMP
     return DONE

@@ -39,9 +39,7 @@ from lcpstep.events.rows.contacts import count_impulses, measure_velocities, sti
 from lcpstep.events.rows.jumps import drive_joints, go_beyond
 from lcpstep.events.rows.keep import keep, keep_event
 from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import clear, copy, copy_indices
 from lcpstep.pointers import abs, max, min
 
@@ -54,78 +52,78 @@ NO_TIME = 2.0**-50
 class Course(Events):
     """A motion with contacts and joints; s : Rubbing."""
 
-    def __init__(self, s: Rubbing, record: Record, tally: Tally) -> None:
-        super().__init__(record, tally, record.event_capacity - record.event_capacity // 2)
+    def __init__(self, s: Rubbing) -> None:
+        super().__init__(s.clock, s.clock.record.event_capacity - s.clock.record.event_capacity // 2)
         self.s = s
 
     def stage(self, goal: int) -> int:
         """Whether there is an event, or the motion goes on."""
         if self.s.rows.next != MOVE:
             return DUE
-        return AHEAD if self.s.clock.t0 < self.s.clock.t_end and self.tally.steps < goal else ARRIVED
+        return AHEAD if self.s.clock.t0 < self.s.clock.t_end and self.clock.tally.steps < goal else ARRIVED
 
     def happen(self) -> int:
         """The event, or what follows from it; a status."""
-        code = yielding(self.s, self.record, self.tally, occur(self.s, self.record, self.tally))
+        code = yielding(self.s, occur(self.s))
         if code == BUFFER_FULL and self.s.rows.next == MOVE:  # for the impact of one that jams
             self.s.rows.next = SETTLE
         return code
 
     def move(self) -> int:
         """A step of the motion, or what precedes it; a status."""
-        return yielding(self.s, self.record, self.tally, go_further(self.s, self.record, self.tally))
+        return yielding(self.s, go_further(self.s))
 
     @cython.ccall
     def keep_now(self) -> None:
         """Keep the state at the base time, called from Python."""
-        keep(self.s.rows, self.record, self.s.clock.t0, self.s.y)
+        keep(self.s.rows, self.s.clock.t0, self.s.y)
 
 
-def occur(s: Rubbing, record: Record, tally: Tally) -> int:
+def occur(s: Rubbing) -> int:
     """What comes next, at one time; a status."""
     if s.rows.next == BEGIN:
         return begin(s)
     if s.rows.next == JUMP:
-        code = jump(s, record, tally, s.clock.t0) if come_to_rest(s) else NOT_FINITE
+        code = jump(s, s.clock.t0) if come_to_rest(s) else NOT_FINITE
         if code == DONE:
             s.rows.next = SETTLE
         s.guards = ENTERED if s.guards == ENTERED else JUMPED
         return code
     if s.rows.next == SWITCH:
         s.rows.next = JUMP
-        return switch(s, tally)
+        return switch(s)
     settles, s.rows.next = s.rows.next == SETTLE, MOVE
-    return settle(s, record, tally) if settles else follow(s, record, tally)
+    return settle(s) if settles else follow(s)
 
 
-def yielding(s: Rubbing, record: Record, tally: Tally, code: int) -> int:
+def yielding(s: Rubbing, code: int) -> int:
     """The same status, but for a contact that jams where that ends in an impact; nothing jams without friction."""
     if code == PAINLEVE_INCONSISTENT and s.n_t == 0:
         return NO_FORCES
     if code == PAINLEVE_INCONSISTENT and s.yields and s.rows.culprit >= 0:
-        return jam(s, record, tally, s.clock.t0)
+        return jam(s, s.clock.t0)
     return code
 
 
-def go_further(s: Rubbing, record: Record, tally: Tally) -> int:
+def go_further(s: Rubbing) -> int:
     """A step of the motion, or what precedes it; a status."""
     if s.watched and s.guards != LOOKED:
         look_at_guards(s)
         return DONE
-    if record.row == 0 and record.n_times == 0:
-        keep(s.rows, record, s.clock.t0, s.y)
+    if s.clock.record.row == 0 and s.clock.record.n_times == 0:
+        keep(s.rows, s.clock.t0, s.y)
         return DONE
-    return turn_corner(s) if s.clock.t0 >= s.clock.high else progress(s, record, tally)
+    return turn_corner(s) if s.clock.t0 >= s.clock.high else progress(s)
 
 
-def progress(s: Rubbing, record: Record, tally: Tally) -> int:
+def progress(s: Rubbing) -> int:
     """One step of the motion, up to an event; those that take no time are counted, for rounding may ask for them."""
     t = s.clock.t0
-    code = s.proceed(record, tally)
+    code = s.proceed()
     if code == DONE and s.rows.n_kept < s.n_j and come_apart(s):
         code = JOINTS_FAILED
     moment = max(NO_TIME * s.scan_length, s.clock.untold(0.0))
-    tally.stalled = tally.stalled + 1 if s.clock.t0 - t <= moment else 0
+    s.clock.tally.stalled = s.clock.tally.stalled + 1 if s.clock.t0 - t <= moment else 0
     return code
 
 
@@ -162,23 +160,23 @@ def turn_corner(s: Rubbing) -> int:
     return DONE
 
 
-def settle(s: Rubbing, record: Record, tally: Tally) -> int:
+def settle(s: Rubbing) -> int:
     """Forces and modes at the base state, where `free` says which contacts do not slide; hops that end."""
     t = s.clock.t0
     for turn in range(s.n_c + 1):
         if not measure(s, t, s.y):
             return NOT_FINITE
-        code = seek_modes(s, record, tally, t)
+        code = seek_modes(s, t)
         if code == DONE:
-            code = obey(s, record, tally, t)
+            code = obey(s, t)
         if code != DONE:
             return code
-        if turn == s.n_c or not close_small(s, record, tally, t):
+        if turn == s.n_c or not close_small(s, t):
             break
-    return set_out(s, record, t)
+    return set_out(s, t)
 
 
-def seek_modes(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+def seek_modes(s: Rubbing, t: float) -> int:
     """New modes at the base state just measured, or a little later where it leaves them open; a status.
 
     What velocities are known to is that of this instant, and not of states that are looked at further on.
@@ -194,7 +192,7 @@ def seek_modes(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
         copy_indices(s.tried, s.new_mode, s.n_c)
         code = look_on(s, t, longest)
         if code == DONE:
-            tell_left(s, record, tally, t)
+            tell_left(s, t)
     clear(s.doubt, s.n_r)
     copy(s.terms, s.samples, 2 * s.n_c)
     return code
@@ -245,29 +243,29 @@ def keep_modes(s: Rubbing) -> None:
         s.new_mode[c], s.new_direction[c], s.new_loaded[c] = s.mode[c], s.direction[c], s.loaded[c]
 
 
-def tell_left(s: Rubbing, record: Record, tally: Tally, t: float) -> None:
+def tell_left(s: Rubbing, t: float) -> None:
     """Log as closed what has just come to its surface, is closed there (`tried`), and leaves by a force that begins.
 
     That it leaves is logged by `obey`.
     """
     for c in range(s.n_c):
         if s.was_mode[c] == OPEN and s.tried[c] != OPEN and s.new_mode[c] == OPEN:
-            s.clock.log(record, tally, t, c, STAYS_CLOSED, 0.0, s.velocity[s.n_j + c], 0.0)
+            s.clock.log(t, c, STAYS_CLOSED, 0.0, s.velocity[s.n_j + c], 0.0)
             s.was_mode[c] = SLIDES
 
 
-def follow(s: Rubbing, record: Record, tally: Tally) -> int:
+def follow(s: Rubbing) -> int:
     """Obey the modes that `look_ahead` has found."""
-    code = obey(s, record, tally, s.clock.t0)
-    return set_out(s, record, s.clock.t0) if code == DONE else code
+    code = obey(s, s.clock.t0)
+    return set_out(s, s.clock.t0) if code == DONE else code
 
 
-def set_out(s: Rubbing, record: Record, t: float) -> int:
+def set_out(s: Rubbing, t: float) -> int:
     """The motion goes on with the modes at hand."""
     find_loose(s)
     if not begin_guards(s, t):
         return NOT_FINITE
     for c in range(s.n_c):
         s.touches[c] = 1 if s.mode[c] != OPEN else 0
-    keep_event(s.rows, record, t)
+    keep_event(s.rows, t)
     return DONE

@@ -13,14 +13,13 @@ from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.rows.contacts import rubs
 from lcpstep.events.rows.equations import renew_biases, size_of_acceleration
-from lcpstep.events.rows.held import is_held
+from lcpstep.events.rows.held import DRIFT, is_held
 from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.dop853 import STAGES
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles, abs, after, max, min
 
 NEAR = 1e-3  # of the way to either end of where it is sought: how well a time is known
-DRIFT = 1e-9  # of the terms of an acceleration: one that the rows held do not keep at zero
 # Of the time in which it grows to that from what rounding hides: how much earlier it begins; one of power 8 in time
 EARLIER = 0.35
 MORE = 4.0  # times such an acceleration: what is left where it was, or kept by other rows, is looked at again

@@ -40,10 +40,8 @@ from lcpstep.events.rows.problem import (
 )
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import motion_of
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.repose import moves, stay
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import clear, copy, product
 from lcpstep.pointers import abs, after, max
 
@@ -220,11 +218,11 @@ def size_of_coupled(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     return size
 
 
-def obey(s: Rubbing, record: Record, tally: Tally, t: float) -> int:
+def obey(s: Rubbing, t: float) -> int:
     """Take over the modes decided, and hold their rows; log what has changed."""
     code = adopt_modes(s)
     if code == DONE:
-        tell(s.rows, record, tally, t)
+        tell(s.rows, t)
     return code
 
 
@@ -255,13 +253,11 @@ def stand_alone(s: Rubbing) -> None:
     What is wedged, or stands on three feet, leans with the forces found: with a tangent held a normal may have none.
     """
     for c in range(s.n_c):
-        if s.mode[c] == LEANS and not (hold_modes(s.rows) and is_carried(s, s.n_j + s.n_c + c)):
+        i = (
+            s.n_j + s.n_c + c
+        )  # it depends on the rows held where what moves it alone does not, once these are kept
+        if s.mode[c] == LEANS and not (hold_modes(s.rows) and abs(gives(s, i)) <= EDGE * s.W[i * s.n_r + i]):
             s.mode[c] = STICKS
-
-
-def is_carried(s: Rubbing, i: int) -> bool:
-    """Whether row i depends on the rows held: what moves it alone does not, once these are kept."""
-    return abs(gives(s, i)) <= EDGE * s.W[i * s.n_r + i]
 
 
 def gives(s: Rubbing, i: int) -> float:

@@ -12,45 +12,43 @@ from lcpstep.events.rows.contacts import add_impulse
 from lcpstep.events.rows.keep import keep
 from lcpstep.events.rows.projection import project
 from lcpstep.kernels.dop853 import ALL, STAGES
-from lcpstep.kernels.record import Record
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import clear, copy
 from lcpstep.pointers import abs
 
 
-def take_over(s: Rubbing, record: Record, tally: Tally, t: float, tau: float) -> None:
+def take_over(s: Rubbing, t: float, tau: float) -> None:
     """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
-    tally.steps += 1
+    s.clock.tally.steps += 1
     pressed = 0.0
     clear(s.counted, s.n_r)
-    while record.wants(t, t >= s.clock.t_end):
-        wanted = record.awaited() - s.clock.t0
+    while s.clock.record.wants(t, t >= s.clock.t_end):
+        wanted = s.clock.record.awaited() - s.clock.t0
         press_between(s, pressed, wanted)
         pressed = wanted
-        keep_wanted(s, record, wanted)
+        keep_wanted(s, wanted)
     if tau > 0.0:
         press_rest(s, pressed, tau)
-        record.store(s.F, s.length)
+        s.clock.record.store(s.F, s.length)
         copy(s.y, s.y_new, 2 * s.n_q)
     s.clock.start_at(t)
     if tau > 0.0 and s.rows.n_held > 0:
         project(s.rows, t, s.q, s.v)
 
 
-def keep_wanted(s: Rubbing, record: Record, tau: float) -> None:
+def keep_wanted(s: Rubbing, tau: float) -> None:
     """Keep the state asked for next, tau from now: on the rows held, which dense output leaves by its own error."""
-    t = record.awaited()
+    t = s.clock.record.awaited()
     if tau > 0.0:
         s.at(tau / s.length, s.seen)
         copy(s.dy, s.y, 2 * s.n_q)
         copy(s.y, s.seen, 2 * s.n_q)
         if s.rows.n_held > 0:
             project(s.rows, t, s.q, s.v)
-        keep(s.rows, record, t, s.y)
+        keep(s.rows, t, s.y)
         copy(s.y, s.dy, 2 * s.n_q)
     else:
-        keep(s.rows, record, t, s.y)
-    record.next_time += 1
+        keep(s.rows, t, s.y)
+    s.clock.record.next_time += 1
 
 
 def press_between(s: Rubbing, a: float, b: float) -> None:

@@ -57,7 +57,7 @@ class ContactRun(Integrated):
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
         s = self.system = self.start(scene, method)
         super().__init__(method, scene, kept, s.clock, s, s.scan_length, s.n_r, False)
-        self.course = Course(s, self.recorder.record, self.tally)
+        self.course = Course(s)
 
     def start(self, scene: Scene, method: Any) -> Any:
         """The motion at the start of the span."""

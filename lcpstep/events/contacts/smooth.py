@@ -9,8 +9,6 @@ from lcpstep.events.contacts.loose import straying
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.step import step
 from lcpstep.events.rows.held import size_of_pushes
-from lcpstep.kernels.record import Record
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import Doubles, after
 
@@ -29,9 +27,9 @@ class Smooth(Rubbing):
         """Of what the rows held push with, where their forces are sought at each state."""
         return 0.0 if self.constant else size_of_pushes(self.rows)
 
-    def proceed(self, record: Record, tally: Tally) -> int:
+    def proceed(self) -> int:
         """A step that meets the tolerance, up to the first event within it; a status."""
-        return step(self, record, tally)
+        return step(self)
 
     def straying_at(self, place: float, h: float, level: float) -> int:
         """The first contact of which a row has left its rest at that fraction of the step, or -1: by dense output."""

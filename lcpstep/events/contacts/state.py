@@ -12,15 +12,13 @@ import numpy as np
 
 from lcpstep.arrays import doubles, indices
 from lcpstep.events.codes import ENTERED
-from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
+from lcpstep.events.hybrid.roots import SAMPLES, Scan
 from lcpstep.events.rows.contacts import Contacts
 from lcpstep.kernels.bracket import Bracket
 from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.dop853 import ALL
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import NOT_FINITE
-from lcpstep.kernels.tally import Tally
 from lcpstep.pointers import after, indices_after
 
 # Of a contact: its gap or normal force; its sliding velocity, or the two edges of its friction cone
@@ -145,8 +143,7 @@ class Rubbing(RungeKutta):
         self.thrown = indices_after(self.new_loaded, n_c)
         self.hops = indices_after(self.thrown, n_c)
         self.carried = indices_after(self.hops, n_c)
-        samples = DEGREE + 1 + CHECKS
-        self.looks = np.zeros(GUARDS * n_c * (samples + 2))
+        self.looks = np.zeros(GUARDS * n_c * (SAMPLES + 2))
         self.value = doubles(self.looks)
         self.band = after(self.value, GUARDS * n_c)
         self.samples = after(self.band, GUARDS * n_c)
@@ -158,7 +155,7 @@ class Rubbing(RungeKutta):
         watch.share(self)
         self.watch, self.watched = watch, True
 
-    def proceed(self, record: Record, tally: Tally) -> int:
+    def proceed(self) -> int:
         """Go on up to the first event, no further than a step; a status. Every way to step has its own."""
         return NOT_FINITE
 

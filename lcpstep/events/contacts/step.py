@@ -35,9 +35,7 @@ from lcpstep.events.contacts.switching import reach_guard, watch
 from lcpstep.events.rows.contacts import gap_tolerance, hold_modes, rubs, sliding, still
 from lcpstep.events.rows.jumps import breaks
 from lcpstep.events.rows.keep import keep
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import abs, max, min
 
@@ -47,19 +45,19 @@ LOOK_AHEAD, FURTHER, FARTHEST = 1e-6, 10.0, 1e-2
 LONGEST = 4.0  # times as long as the shortest hop, were its acceleration constant
 
 
-def step(s: Rubbing, record: Record, tally: Tally) -> int:
+def step(s: Rubbing) -> int:
     """One step, which ends at the first event within it; what comes next into `next`. A status.
 
     Where no forces hold the rows any more, sliding friction takes them away, or surfaces have become parallel.
     """
     s.rows.culprit = -1
-    code = stride(s, record, tally)
+    code = stride(s)
     if code != NOT_FINITE or s.rows.culprit < 0:
         return code
     return PAINLEVE_INCONSISTENT if rubs(s.rows, s.rows.culprit) else NO_FORCES
 
 
-def stride(s: Rubbing, record: Record, tally: Tally) -> int:
+def stride(s: Rubbing) -> int:
     """The same; NOT_FINITE where no forces hold the row of `culprit`."""
     t0, border = s.clock.t0, min(s.clock.t_end, s.clock.high)
     if s.rows.n_held != s.paced:
@@ -74,10 +72,10 @@ def stride(s: Rubbing, record: Record, tally: Tally) -> int:
     if code != DONE:
         return code
     if s.watched and s.watch.culprit >= 0:
-        return complete_to_guard(s, record, tally, s.length)
+        return complete_to_guard(s, s.length)
     if s.guard >= 0:
-        return complete_to_event(s, record, tally, s.length)
-    return complete(s, record, tally, s.length)
+        return complete_to_event(s, s.length)
+    return complete(s, s.length)
 
 
 def find(s: Rubbing, h: float) -> int:
@@ -93,21 +91,21 @@ def find(s: Rubbing, h: float) -> int:
     return watch(s, h, 1.0 if s.guard < 0 else s.found) if s.watched else DONE
 
 
-def complete(s: Rubbing, record: Record, tally: Tally, h: float) -> int:
+def complete(s: Rubbing, h: float) -> int:
     """Take over the step of size h, in which nothing happens; a status."""
     border = min(s.clock.t_end, s.clock.high)
     interrupt(s, -1, h)
-    take_over(s, record, tally, border if h >= border - s.clock.t0 else s.clock.after(h), h)
+    take_over(s, border if h >= border - s.clock.t0 else s.clock.after(h), h)
     if s.hopping:
         if not look(s, s.clock.t0, s.y):
             return NOT_FINITE
         carry(s)
-    if record.is_due(tally.steps):
-        keep(s.rows, record, s.clock.t0, s.y)
+    if s.clock.record.is_due(s.clock.tally.steps):
+        keep(s.rows, s.clock.t0, s.y)
     return DONE
 
 
-def complete_to_event(s: Rubbing, record: Record, tally: Tally, h: float) -> int:
+def complete_to_event(s: Rubbing, h: float) -> int:
     """The step up to the guard found within it, and what comes next; a status."""
     g, border, code = s.guard, min(s.clock.t_end, s.clock.high), DONE
     if of_force(s, g):
@@ -115,30 +113,26 @@ def complete_to_event(s: Rubbing, record: Record, tally: Tally, h: float) -> int
         if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
             return code
     longest = border - s.clock.t0
-    tau = land(s, g, longest) if is_landing(s, g) else locate(s, g, h, longest)
+    lands = g % GUARDS == 0 and s.lands[g // GUARDS] >= 0.0  # a hop that its acceleration has told of
+    tau = land(s, g, longest) if lands else locate(s, g, h, longest)
     if tau == UNKNOWN:
         return NOT_FINITE
     if of_sliding(s, g) and turns_at_once(s, g, tau, h):
         return DONE
     interrupt(s, g // GUARDS, tau)
-    take_over(s, record, tally, min(s.clock.after(tau), border), tau)
+    take_over(s, min(s.clock.after(tau), border), tau)
     if code != DONE or (tau > 0.0 and of_sliding(s, g) and jumps(s, g, tau)):
         return code  # a jump whose polynomial has been there, not the velocity
     return arrive(s, g)
 
 
-def complete_to_guard(s: Rubbing, record: Record, tally: Tally, h: float) -> int:
+def complete_to_guard(s: Rubbing, h: float) -> int:
     """The step up to the guard of modes that acts; a status."""
     tau = reach_guard(s, h)
     interrupt(s, -1, tau)
-    take_over(s, record, tally, min(s.clock.after(tau), min(s.clock.t_end, s.clock.high)), tau)
+    take_over(s, min(s.clock.after(tau), min(s.clock.t_end, s.clock.high)), tau)
     s.rows.next = SWITCH
     return DONE
-
-
-def is_landing(s: Rubbing, g: int) -> bool:
-    """Whether guard g is the end of a hop that has been followed by its acceleration."""
-    return g % GUARDS == 0 and s.lands[g // GUARDS] >= 0.0
 
 
 def land(s: Rubbing, g: int, longest: float) -> float:

@@ -34,7 +34,6 @@ from lcpstep.kernels.status import (
     NOT_TRANSVERSAL,
     TOO_MANY_EVENTS,
 )
-from lcpstep.kernels.tally import Tally
 from lcpstep.pointers import Doubles, max, min
 
 
@@ -43,13 +42,10 @@ class Watched(Motion):
 
     rubbing: Any
 
-    def share(self, s: Any) -> None:
-        """Work on the numbers of that motion."""
+    @cython.ccall
+    def share(self, s: Rubbing) -> None:
+        """Work on the numbers of that motion: states and stages are those of s."""
         self.rubbing, self.state = s, s.state
-        self.take_numbers(s)
-
-    def take_numbers(self, s: Rubbing) -> None:
-        """States and stages are those of s."""
         self.y, self.y_new, self.y_stage, self.first, self.K, self.F = (
             s.y, s.y_new, s.y_stage, s.first, s.K, s.F,
         )  # fmt: skip
@@ -99,7 +95,7 @@ def look_at_guards(s: Rubbing) -> None:
         s.rows.next = SWITCH
 
 
-def switch(s: Rubbing, tally: Tally) -> int:
+def switch(s: Rubbing) -> int:
     """The guard acts at the base: log, reset, new mode; contacts closed that stay so are found by `jump`."""
     k = s.watch.culprit
     if s.watch.switches >= s.watch.log_capacity:
@@ -108,10 +104,10 @@ def switch(s: Rubbing, tally: Tally) -> int:
     s.watch.now, s.guards = s.clock.t0, ENTERED
     leave(s.watch, k)
     s.model.mode = s.watch.mode
-    tally.events += 1
+    s.clock.tally.events += 1
     if s.watch.stalled > MAX_STALLED:
         return ENDLESS_SWITCHING
-    if tally.events > tally.max_events:
+    if s.clock.tally.events > s.clock.tally.max_events:
         return TOO_MANY_EVENTS
     return place(s, s.watch.m.has_reset[k] != 0)
 

@@ -52,13 +52,8 @@ def evaluate(s: Flight, kept: Any, times: Any, row: Any, q: Any, v: Any) -> None
                 state_at(s, t[k])
             else:
                 s.q[0], s.v[0], s.mode = kept_q[at[k]], kept_v[at[k]], mode[at[k]]
-                fly_on(s, kept_t[at[k]], t[k])
+                if t[k] > kept_t[at[k]]:
+                    s.find_corners(kept_t[at[k]])
+                    rebase(s, kept_t[at[k]])
+                    state_at(s, t[k])
             found_q[k], found_v[k] = s.q[0], s.v[0]
-
-
-def fly_on(s: Flight, start: float, t: float) -> None:
-    """From the state s.q, s.v at the time `start` to that at time t, without an event between."""
-    if t > start:
-        s.find_corners(start)
-        rebase(s, start)
-        state_at(s, t)

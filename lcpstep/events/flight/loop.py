@@ -26,7 +26,7 @@ class Course(Events):
     """Flights and rest of one degree of freedom; s : Flight."""
 
     def __init__(self, s: Flight) -> None:
-        super().__init__(s.record, s.tally, SLACK)
+        super().__init__(s, SLACK)
         self.s = s
 
     def stage(self, goal: int) -> int:

@@ -10,17 +10,8 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.flight.contact import (
-    ACCUMULATION,
-    CLOSED,
-    FREE,
-    IMPACT,
-    NONE,
-    ON_THE_SURFACE,
-    RELEASE,
-    STICK,
-    UNSEEN,
-)
+from lcpstep.events.codes import ACCUMULATION, IMPACT, RELEASE, STAYS_CLOSED
+from lcpstep.events.flight.contact import CLOSED, FREE, NONE, ON_THE_SURFACE, UNSEEN
 from lcpstep.events.flight.keep import keep_event
 from lcpstep.events.flight.motion import Flight, free, leave_from, on_obstacle
 from lcpstep.events.flight.rest import alpha_at
@@ -115,7 +106,7 @@ def stick(s: Flight, t_log: float) -> None:
     s.q0, s.v0 = s.q[0], s.v[0]
     leave_from(s, s.now, y, w)
     s.mode, s.g, s.u, s.alpha = CLOSED, 0.0, 0.0, min(alpha, 0.0)
-    log(s, t_log, STICK, 0.0, 0.0, 0.0)
+    log(s, t_log, STAYS_CLOSED, 0.0, 0.0, 0.0)
 
 
 def settle_again(s: Flight) -> None:

@@ -1,12 +1,7 @@
-from lcpstep.kernels.record cimport Record
-from lcpstep.kernels.tally cimport Tally
-
 cdef class Flight(Clock):
     cdef readonly object state
     cdef object space
     cdef readonly Model model
-    cdef readonly Record record
-    cdef readonly Tally tally
     cdef Bracket bracket
     cdef Turn turn
     cdef Function frame, motion

@@ -9,13 +9,12 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.hybrid.field import guard
-from lcpstep.events.hybrid.roots import CHECKS, DEGREE, NONE, convert, first_rise, taylor
+from lcpstep.events.hybrid.roots import NONE, SAMPLES, convert, first_rise, taylor
 from lcpstep.events.hybrid.state import Motion
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.vectors import finite, largest
 from lcpstep.pointers import abs, after, max, min, nan
 
-SAMPLES = DEGREE + 1 + CHECKS
 UNKNOWN = -2  # in place of a guard
 PARTS = 64  # of a step, at most, in which guards are polynomials
 RESOLVED = 1e-10  # difference of guard and polynomial, relative to its largest value

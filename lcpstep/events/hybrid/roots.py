@@ -25,6 +25,7 @@ DEGREE = 9
 DEPTH = 42  # halvings at most
 NONE = -1.0  # in place of a root
 CHECKS = 2  # further samples, which say whether the polynomial is the guard
+SAMPLES = DEGREE + 1 + CHECKS
 
 
 def bernstein(s: Any) -> Any:

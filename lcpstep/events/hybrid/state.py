@@ -10,7 +10,7 @@ import numpy as np
 from lcpstep.arrays import doubles, indices
 from lcpstep.events.hybrid.field import Machine, field, guard
 from lcpstep.events.hybrid.layout import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME
-from lcpstep.events.hybrid.roots import CHECKS, DEGREE, Scan
+from lcpstep.events.hybrid.roots import SAMPLES, Scan
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.vectors import copy, finite
@@ -54,7 +54,7 @@ class Motion(RungeKutta):
         self.kept_rows, self.kept_dense = np.zeros((rows, LEAD + n)), np.zeros((rows, 7, n))
         self.kept_log = np.zeros((switches, SWITCH_LEAD + 2 * n))
         self.lists, self.of_guards = np.zeros(machine.n_guards, dtype=np.intp), np.zeros(machine.n_guards)
-        self.samples = np.zeros((DEGREE + 1 + CHECKS, n))
+        self.samples = np.zeros((SAMPLES, n))
         self.row_capacity, self.log_capacity = rows, switches
         self.rows, self.dense_rows = doubles(self.kept_rows), doubles(self.kept_dense)
         self.log, self.armed = doubles(self.kept_log), indices(self.lists)

@@ -9,12 +9,10 @@ from lcpstep.events.parabolas.state import Mechanism
 from lcpstep.events.rows.chatter import disturbs, find_over, take_along, tell_over
 from lcpstep.events.rows.held import is_held, solve_held
 from lcpstep.events.rows.keep import put_on_account
-from lcpstep.kernels.record import Record
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import clear
 
 
-def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
+def close_chatter(s: Mechanism) -> bool:
     """Close the contacts whose further impacts stay below the tolerance; whether there was one."""
     if not find_over(s):
         return False
@@ -23,7 +21,7 @@ def close_chatter(s: Mechanism, record: Record, tally: Tally) -> bool:
         return False
     for c in range(s.n_c):
         if s.left[c] >= 0.0:
-            tell_over(s, record, tally, c)
+            tell_over(s, c)
             s.mode[c], s.gap[s.n_j + c] = SLIDES, 0.0
     s.halt()
     clear(s.multiplier, s.n_r)

@@ -13,15 +13,13 @@ from lcpstep.events.parabolas.state import Mechanism
 from lcpstep.events.rows.held import push_by_change
 from lcpstep.events.rows.keep import keep
 from lcpstep.kernels.quadratic import first_zero
-from lcpstep.kernels.record import Record
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import copy, largest, product
 from lcpstep.pointers import abs, max, min
 
 LARGE = 1e-6  # of the largest coordinate: what difference of coordinates has digits enough
 
 
-def fly(s: Mechanism, record: Record, tally: Tally) -> None:
+def fly(s: Mechanism) -> None:
     """Constant acceleration up to the next contact, or to the end of the span."""
     n_c, n_j, border = s.n_c, s.n_j, s.t_end - s.t0
     tau, meets = border, -1
@@ -31,19 +29,19 @@ def fly(s: Mechanism, record: Record, tally: Tally) -> None:
             if root < tau:
                 tau, meets = root, c
     t = s.t_end if meets < 0 else min(s.after(tau), s.t_end)
-    tally.steps += 1
+    s.tally.steps += 1
     s.length = tau
     pressed = 0.0
-    while record.wants(t, meets < 0):
-        wanted = record.awaited() - s.t0
+    while s.record.wants(t, meets < 0):
+        wanted = s.record.awaited() - s.t0
         press(s, wanted - pressed)
         pressed = wanted
         state_at(s, wanted)
-        keep(s, record, record.awaited(), s.q)
-        record.next_time += 1
+        keep(s, s.record.awaited(), s.q)
+        s.record.next_time += 1
     press(s, tau - pressed)
     state_at(s, tau)
-    record.store(s.a, tau)
+    s.record.store(s.a, tau)
     for c in range(n_c):
         if s.mode[c] == OPEN:
             i, alpha = n_j + c, s.curve[c]
@@ -51,12 +49,12 @@ def fly(s: Mechanism, record: Record, tally: Tally) -> None:
             s.velocity[i] = s.velocity[i] + alpha * tau
     rebase(s, t)
     if meets < 0:
-        if record.is_due(tally.steps):
-            keep(s, record, t, s.q)
+        if s.record.is_due(s.tally.steps):
+            keep(s, t, s.q)
         return
     s.gap[n_j + meets] = 0.0
     if tau == 0.0:
-        tally.stalled += 1
+        s.tally.stalled += 1
     s.next = JUMP
 
 

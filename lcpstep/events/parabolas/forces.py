@@ -14,7 +14,7 @@ from lcpstep.events.parabolas.state import Mechanism
 from lcpstep.events.rows.chatter import CHECKED
 from lcpstep.events.rows.contacts import accelerate_on_joints, hold_modes, list_multipliers
 from lcpstep.events.rows.equations import size_of, size_of_acceleration
-from lcpstep.events.rows.held import balance, constrain, contradiction, hold, hold_joints, solve_held
+from lcpstep.events.rows.held import DRIFT, balance, constrain, contradiction, hold, hold_joints, solve_held
 from lcpstep.events.rows.loads import unload
 from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
 from lcpstep.events.rows.problem import fill
@@ -25,7 +25,6 @@ from lcpstep.kernels.vectors import add, clear, copy, largest, product
 from lcpstep.pointers import abs, after
 
 PASSES = 1e-12  # of the terms of a gap acceleration: one into the surface that is no rounding
-DRIFT = 1e-9  # the same: one that the rows held do not keep at zero
 
 
 def contact_forces(s: Mechanism) -> int:

@@ -18,9 +18,7 @@ from lcpstep.events.rows.equations import free_motion, measure_rates, respond
 from lcpstep.events.rows.keep import keep
 from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.dynamics import gaps
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.status import DONE, NOT_FINITE
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import copy, product
 from lcpstep.pointers import after
 
@@ -28,45 +26,45 @@ from lcpstep.pointers import after
 class Course(Events):
     """A motion with contacts and joints; s : Mechanism."""
 
-    def __init__(self, s: Mechanism, record: Record, tally: Tally) -> None:
-        super().__init__(record, tally, record.event_capacity - record.event_capacity // 2)
+    def __init__(self, s: Mechanism) -> None:
+        super().__init__(s, s.record.event_capacity - s.record.event_capacity // 2)
         self.s = s
 
     def stage(self, goal: int) -> int:
         """Whether there is an event, or the motion goes on."""
         if self.s.next != MOVE:
             return DUE
-        return AHEAD if self.s.t0 < self.s.t_end and self.tally.steps < goal else ARRIVED
+        return AHEAD if self.s.t0 < self.s.t_end and self.s.tally.steps < goal else ARRIVED
 
     def happen(self) -> int:
         """The event, or what follows from it; a status."""
-        return occur(self.s, self.record, self.tally)
+        return occur(self.s)
 
     def move(self) -> int:
         """A flight, or what precedes it; a status."""
-        if self.record.row == 0 and self.record.n_times == 0:
-            keep(self.s, self.record, self.s.t0, self.s.q)
+        if self.s.record.row == 0 and self.s.record.n_times == 0:
+            keep(self.s, self.s.t0, self.s.q)
         else:
-            fly(self.s, self.record, self.tally)
+            fly(self.s)
         return DONE
 
     @cython.ccall
     def keep_now(self) -> None:
         """Keep the state at the base time, called from Python."""
         copy(self.s.q, self.s.q0, 2 * self.s.n_q)
-        keep(self.s, self.record, self.s.t0, self.s.q)
+        keep(self.s, self.s.t0, self.s.q)
 
 
-def occur(s: Mechanism, record: Record, tally: Tally) -> int:
+def occur(s: Mechanism) -> int:
     """What comes next, at one time; a status."""
     if s.next == BEGIN:
         s.next = JUMP
         return DONE if begin(s) else NOT_FINITE
     if s.next == JUMP:
         s.next = SETTLE
-        return jump(s, record, tally)
+        return jump(s)
     s.next = MOVE
-    return settle(s, record, tally)
+    return settle(s)
 
 
 def begin(s: Mechanism) -> bool:

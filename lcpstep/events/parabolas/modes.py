@@ -13,41 +13,37 @@ from lcpstep.events.parabolas.flight import polish, rebase, synchronise
 from lcpstep.events.parabolas.forces import contact_forces, stands
 from lcpstep.events.parabolas.impact import strike
 from lcpstep.events.parabolas.state import Mechanism
-from lcpstep.events.rows.cycle import fades, look_back, recurs, sum_up
+from lcpstep.events.rows.cycle import ROUNDS, fades, look_back, recurs, sum_up
 from lcpstep.events.rows.held import hold_joints
 from lcpstep.events.rows.keep import keep_event, tell
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.recurrence import FOR_EVER, looks_back
 from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.together import CROSSED, moment_untold, order_matters
 from lcpstep.pointers import abs, max
 
-ROUNDS = 100_000  # problems of impacts at one instant
 
-
-def jump(s: Mechanism, record: Record, tally: Tally) -> int:
+def jump(s: Mechanism) -> int:
     """Impacts at the state q, v until no contact that is closed approaches."""
-    before = tally.stalled
+    before = s.tally.stalled
     for c in range(s.n_c):
         s.terms[c], s.parting[c] = 0.0, 1 if just_opened(s, c) else 0
     for turn in range(ROUNDS):
         if not approaches(s):
             rejoin(s)
-            if tally.stalled > before + 1:  # the impacts of one instant count as one
-                tally.stalled = before + 1
+            if s.tally.stalled > before + 1:  # the impacts of one instant count as one
+                s.tally.stalled = before + 1
             return DONE
-        if record.event + 4 * s.n_c + 4 > record.event_capacity:
+        if s.record.event + 4 * s.n_c + 4 > s.record.event_capacity:
             s.next = JUMP
             return BUFFER_FULL
-        if tally.events > tally.max_events:
+        if s.tally.events > s.tally.max_events:
             return TOO_MANY_EVENTS
         ratio = recurs(s) if turn > 0 else 0.0
         if ratio >= FOR_EVER:
             if not fades(s):
                 return TOO_MANY_EVENTS
         elif ratio > 0.0:
-            sum_up(s, record, tally, ratio)
+            sum_up(s, ratio)
         else:
             if looks_back(turn):
                 look_back(s)
@@ -55,7 +51,7 @@ def jump(s: Mechanism, record: Record, tally: Tally) -> int:
                 let_go(s)
             if not strike(s):
                 return NO_IMPULSES
-            tell_impacts(s, record, tally, s.t0)
+            tell_impacts(s, s.t0)
             synchronise(s)
     return TOO_MANY_EVENTS
 
@@ -154,14 +150,14 @@ def has_come(s: Mechanism, c: int) -> bool:
     return False
 
 
-def tell_impacts(s: Mechanism, record: Record, tally: Tally, t: float) -> None:
+def tell_impacts(s: Mechanism, t: float) -> None:
     """Log the impacts of the problem just solved; contacts that it leaves without speed are closed."""
     for m in range(s.n_members):
         c, p = s.problem.ids[m], s.problem.impulse[m]
         before, noise = s.before[c], s.noise(c)
         if p > 0.0:
             u = -s.model.restitution[c] * before
-            s.log(record, tally, t, c, IMPACT, before, u, p)
+            s.log(t, c, IMPACT, before, u, p)
             s.since[c], s.struck[c] = t - s.struck[c], t
         else:
             u = s.velocity[s.n_j + c]
@@ -170,20 +166,20 @@ def tell_impacts(s: Mechanism, record: Record, tally: Tally, t: float) -> None:
         s.gap[s.n_j + c] = 0.0
 
 
-def settle(s: Mechanism, record: Record, tally: Tally) -> int:
+def settle(s: Mechanism) -> int:
     """After a jump: contact forces, contacts that open, chattering that is over."""
     n_c, t = s.n_c, s.t0
     for turn in range(n_c + 1):
         code = forces(s)
         if code != DONE:
             return code
-        if turn == n_c or not close_chatter(s, record, tally):
+        if turn == n_c or not close_chatter(s):
             break
-    if tell(s, record, tally, t):
+    if tell(s, t):
         polish(s)
     rebase(s, t)
     hand_on(s)
-    keep_event(s, record, t)
+    keep_event(s, t)
     return DONE
 
 

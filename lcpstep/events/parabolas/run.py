@@ -31,4 +31,4 @@ class ParabolicRun(Integrated):
         s = self.system = Mechanism(m, joints, scene.n_j, tolerances, scene.t_span)
         s.start(scene.q0, scene.v0)
         super().__init__(method, scene, kept, s, s, scan_interval(scene, m, 0.0), scene.n_c + scene.n_j, True)
-        self.course = Course(s, self.recorder.record, self.tally)
+        self.course = Course(s)

@@ -28,8 +28,6 @@ from lcpstep.events.rows.contacts import (
 from lcpstep.events.rows.equations import other
 from lcpstep.events.rows.held import constrain, solve_held
 from lcpstep.kernels.quadratic import accumulation, first_zero
-from lcpstep.kernels.record import Record
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import clear, copy, copy_indices, largest
 from lcpstep.pointers import abs, max, min
 
@@ -218,10 +216,10 @@ def drives_others(s: Contacts) -> bool:
     return False
 
 
-def tell_over(s: Contacts, record: Record, tally: Tally, c: int) -> None:
+def tell_over(s: Contacts, c: int) -> None:
     """Log the end of the chattering of contact c, as its impacts lead up to."""
     u, alpha, T, i = s.velocity[s.n_j + c], s.curve[c], s.left[c], s.n_j + c
     s.chatter_end[c] = s.t0 + T
     if abs(u) > s.noise(c):
         p = max(-alpha * T - u, 0.0) / s.D[i * s.n_r + i]
-        s.log(record, tally, s.chatter_end[c], c, ACCUMULATION, -abs(u), 0.0, p)
+        s.log(s.chatter_end[c], c, ACCUMULATION, -abs(u), 0.0, p)

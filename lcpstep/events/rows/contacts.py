@@ -202,18 +202,14 @@ def pull(s: Contacts, i: int) -> float:
     return -s.direction[c] / s.mu_s[c] if c >= 0 and s.mode[c] == LEANS else 0.0
 
 
-def leans(s: Contacts, i: int) -> bool:
-    """Whether row i is of a contact that leans on others."""
-    return i >= s.n_j and s.mode[(i - s.n_j) % s.n_c] == LEANS
-
-
 def hold_row(s: Contacts, i: int) -> bool:
     """Add row i to the rows held, unless it depends on them; False where sliding takes its force away.
 
     Of what leans on others the sign tells nothing: it does not slide.
     """
     if s.n_t > 0:
-        s.share[i], s.either[i] = pull(s, i), 1 if leans(s, i) else 0
+        leans = i >= s.n_j and s.mode[(i - s.n_j) % s.n_c] == LEANS
+        s.share[i], s.either[i] = pull(s, i), 1 if leans else 0
     return hold(s, i)
 
 

@@ -9,12 +9,11 @@ import cython
 
 from lcpstep.events.codes import ACCUMULATION, OPEN, SLIDES, STICKS
 from lcpstep.events.rows.contacts import Contacts, is_met, rubs
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.recurrence import CERTAIN, FAINT, FOR_EVER, left, proportion
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import clear, copy
 from lcpstep.pointers import abs, after, max
 
+ROUNDS = 100_000  # problems of impacts at one instant
 SLIDES_ON = 2.0**-20  # of what friction can do in a turn: so near to it does it slide all along
 
 
@@ -74,14 +73,14 @@ def rests(s: Contacts, i: int, ratio: float) -> bool:
     return abs(left(s.turn_velocity[i], s.velocity[i], ratio)) <= CERTAIN * abs(s.velocity[i])
 
 
-def sum_up(s: Contacts, record: Record, tally: Tally, ratio: float) -> None:
+def sum_up(s: Contacts, ratio: float) -> None:
     """Take the impacts that are left as one: the contacts that they strike are closed."""
     rest, pushed = ratio / (1.0 - ratio), s.n_c + s.n_t
     for c in range(s.n_c):
         p = rest * s.turn_impulse[c]
         if p > 0.0:
             before = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
-            s.log(record, tally, s.t0, c, ACCUMULATION, before, 0.0, p)
+            s.log(s.t0, c, ACCUMULATION, before, 0.0, p)
             s.since[c], s.struck[c] = s.t0 - s.struck[c], s.t0
             if s.mode[c] == OPEN:
                 rough = rubs(s, c)

@@ -26,6 +26,7 @@ TAKEN_OUT = 2.0**-45  # of a row's mobility: what taking joints out of the row l
 REFINEMENTS = 6
 ROUNDED = 64.0 * RESOLUTION  # of multipliers: corrections that leave nothing but rounding
 PARTED = 1e3  # tolerances by which joints that say the same may differ
+DRIFT = 1e-9  # of the terms of an acceleration: one that the rows held do not keep at zero
 DISAGREEMENT = 1e-8  # relative acceleration that joints may not agree about
 
 

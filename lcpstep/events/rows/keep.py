@@ -17,18 +17,16 @@ from lcpstep.events.codes import (
 )
 from lcpstep.events.rows.contacts import Contacts, add_impulse, of_tangent, rubs, sliding
 from lcpstep.kernels.clock import NOISE
-from lcpstep.kernels.record import Record
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import add
 from lcpstep.pointers import Doubles, abs, after, max
 
 
-def keep(s: Contacts, record: Record, t: float, y: Doubles) -> None:
+def keep(s: Contacts, t: float, y: Doubles) -> None:
     """Keep the state y = (q, v), and the impulses since the one before."""
     for c in range(s.n_c):
         if s.owed[c] != 0.0 or s.owed[s.n_c + c] != 0.0:
             pay(s, c)
-    record.keep(t, 0.0, y, after(y, s.n_q), s.impulse)
+    s.record.keep(t, 0.0, y, after(y, s.n_q), s.impulse)
 
 
 def pay(s: Contacts, c: int) -> None:
@@ -57,14 +55,14 @@ def put_on_account(s: Contacts) -> None:
     add(s.owed, 1.0, after(s.multiplier, s.n_j), s.n_c + s.n_t)
 
 
-def keep_event(s: Contacts, record: Record, t: float) -> None:
+def keep_event(s: Contacts, t: float) -> None:
     """Keep the state after an event, if these are kept; events at one time share a row."""
-    if record.keeps_events():
-        record.take_back(t, s.impulse)
-        keep(s, record, t, s.q)
+    if s.record.keeps_events():
+        s.record.take_back(t, s.impulse)
+        keep(s, t, s.q)
 
 
-def tell(s: Contacts, record: Record, tally: Tally, t: float) -> bool:
+def tell(s: Contacts, t: float) -> bool:
     """Log the contacts whose mode is another than when last told; whether one has closed."""
     some = False
     for c in range(s.n_c):
@@ -77,13 +75,13 @@ def tell(s: Contacts, record: Record, tally: Tally, t: float) -> bool:
                 kind, when, some = STAYS_CLOSED, max(t, s.chatter_end[c]), True
             else:
                 s.chatter_end[c] = t
-            s.log(record, tally, when, c, kind, 0.0, s.velocity[i], 0.0)
+            s.log(when, c, kind, 0.0, s.velocity[i], 0.0)
         elif was == SLIDES and now == STICKS:
-            s.log(record, tally, t, c, STICK_TANGENT, slip, 0.0, 0.0)
+            s.log(t, c, STICK_TANGENT, slip, 0.0, 0.0)
         elif was == STICKS and now == SLIDES:
-            s.log(record, tally, t, c, SLIP, 0.0, slip, 0.0)
+            s.log(t, c, SLIP, 0.0, slip, 0.0)
         elif was == SLIDES and now == SLIDES and turned(s, c):
-            s.log(record, tally, t, c, REVERSE, slip, slip, 0.0)
+            s.log(t, c, REVERSE, slip, slip, 0.0)
         s.was_mode[c], s.was_direction[c] = now, s.direction[c]
     return some
 

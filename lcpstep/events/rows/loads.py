@@ -71,7 +71,9 @@ def share_out(s: Rows, x: Doubles) -> None:
         if not is_held(s, i) and find_idle(s, i, z):
             for m in range(count):
                 add(z, -product(s.idle, z, m, n), after(s.idle, m * n), n)
-            normalise(z, n)
+            size = sqrt(product(z, z, 0, n))
+            for k in range(n):
+                z[k] /= size
             count += 1
     for m in range(count):
         z, part = after(s.idle, m * n), 0.0
@@ -98,10 +100,3 @@ def find_idle(s: Rows, i: int, z: Doubles) -> bool:
     for m in range(s.n_kept):
         z[s.row[m]] = -y[m] * sqrt(s.D[s.row[m] * r + s.row[m]])
     return z[i] > 0.0
-
-
-def normalise(z: Doubles, n: int) -> None:
-    """z of length one."""
-    size = sqrt(product(z, z, 0, n))
-    for k in range(n):
-        z[k] /= size

@@ -15,7 +15,7 @@ from lcpstep.stepping.pieces.keep import keep, keep_now
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms
 from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, respond
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.pieces.times import rounded_by, within
+from lcpstep.stepping.pieces.times import within
 
 
 def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
@@ -44,7 +44,9 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
             size = abs(w.gap_t[c]) + plan.h * acceleration_terms(m, w, c)
             for i in range(w.n_q):
                 size += abs(w.G[c * w.n_q + i] * w.v[i])
-            if abs(w.rate[c]) <= 64 * EPS * size + rounded_by(plan, w, c, t):
+            # What its obstacle changes its velocity by in what time is rounded by, and moved off a corner
+            rounded = (plan.margin + 4.0 * EPS * abs(t)) * abs(w.bias[c])
+            if abs(w.rate[c]) <= 64 * EPS * size + rounded:
                 w.rate[c], w.status[c] = 0.0, CLOSED
                 w.closed_now += 1
     if record.n_times == 0:

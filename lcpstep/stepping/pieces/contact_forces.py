@@ -134,11 +134,6 @@ def pulls(m: Model, w: Work, c: int) -> bool:
     return alpha > ROUNDING * (size + acceleration_terms(m, w, c)) and -w.p[c] > force_rounding(m, w, c)
 
 
-def weighs(m: Model, w: Work, c: int, force: float) -> bool:
-    """Whether a force on contact c is more than rounding of what forces there balance."""
-    return w.W[c * w.n_c + c] * force > ROUNDING * acceleration_terms(m, w, c)
-
-
 def force_rounding(m: Model, w: Work, c: int) -> float:
     """Rounding of the force of contact c, sum_d |W^-1|_cd |terms_d|: much of it where normals are nearly parallel."""
     n_k, error = w.pivots[w.n_c], 0.0

@@ -14,14 +14,16 @@ from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import clear, copy, finite
-from lcpstep.pointers import inf, max
+from lcpstep.pointers import abs, inf, max
 from lcpstep.stepping.pieces.begin import begin_motion
 from lcpstep.stepping.pieces.carried import put_kept_back
 from lcpstep.stepping.pieces.codes import (
     AGAIN,
     BUFFER_FULL,
     CORNER,
+    EPS,
     FINISHED,
+    LATE,
     NOBODY,
     NOT_FINITE,
     OPEN,
@@ -35,7 +37,6 @@ from lcpstep.stepping.pieces.impulses import zero_speeds
 from lcpstep.stepping.pieces.keep import keep, keep_now
 from lcpstep.stepping.pieces.settle import settle
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.pieces.times import just_after
 
 
 class Steps(Stepwise):
@@ -220,7 +221,7 @@ def end_step(plan: Plan, w: Work, record: Record, t: float, stop: float) -> int:
 
     States asked for at rounding after it are the next step's, which an impact may begin; at the span's end none is.
     """
-    late = just_after(plan, t)
+    late = t + LATE * plan.h + 4.0 * EPS * abs(t)
     keep_now(w, record, late if late >= stop else t)
     w.steps += 1
     w.under_way = False

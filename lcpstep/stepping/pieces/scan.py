@@ -17,8 +17,8 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.pieces.codes import CLOSED, EPS, LEFT, NOBODY, OPEN, ROUNDING
-from lcpstep.stepping.pieces.contact_forces import pulls, weighs
-from lcpstep.stepping.pieces.magnitudes import speed_terms
+from lcpstep.stepping.pieces.contact_forces import pulls
+from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.polynomial import NODES, PROBES, WEIGHTS, Polynomial, contacts_at, force_at
 from lcpstep.stepping.pieces.state import Plan, Work
 
@@ -182,7 +182,11 @@ def brief_release(
     for c in range(n_c if probe > 0 else 0):
         left, right = z.pressed[(probe - 1) * n_c + c], z.pressed[probe * n_c + c]
         most = max(max(left, right), max(z.pressed[before * n_c + c], z.pressed[last * n_c + c]))
-        if w.status[c] != CLOSED or most <= FALLS * max(min(left, right), 0.0) or not weighs(m, w, c, most):
+        if w.status[c] != CLOSED or most <= FALLS * max(min(left, right), 0.0):
+            continue
+        if not w.W[c * w.n_c + c] * most > ROUNDING * acceleration_terms(
+            m, w, c
+        ):  # rounding of what they balance
             continue
         x = (2 * probe - 1) * h
         force_at(m, plan, w, z, t, x)

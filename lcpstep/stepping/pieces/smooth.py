@@ -16,7 +16,7 @@ import cython
 
 from lcpstep.kernels.acceleration import factor_mass, response
 from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, total_force
-from lcpstep.kernels.linear import factorise, grow_factor, solve, solve_factored
+from lcpstep.kernels.linear import grow_factor, invert_matrix, solve_factored
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, copy, product
 from lcpstep.pointers import Doubles, abs, after, max, min
@@ -42,13 +42,7 @@ def invert(m: Model, plan: Plan, w: Work, rest: float, place: int) -> None:
     else:
         for i in range(n * n):
             plan.A[i] = m.M[i] + 0.5 * rest * m.C[i] + 0.25 * rest * rest * m.K[i]
-        factorise(plan.A, plan.pivots, n)
-        for j in range(n):
-            for i in range(n):
-                plan.unit[i] = 1.0 if i == j else 0.0
-            solve(plan.A, plan.pivots, plan.unit, n)
-            for i in range(n):
-                inverse[i * n + j] = plan.unit[i]
+        invert_matrix(plan.A, plan.pivots, 1.0, plan.unit, inverse, n)
     if plan.constant:
         answer_forces(inverse, m.G, AG, WA, n, n_c)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.pointers import abs, max, min
-from lcpstep.stepping.pieces.codes import EPS, LATE
+from lcpstep.stepping.pieces.codes import EPS
 from lcpstep.stepping.pieces.state import Plan, Work
 
 
@@ -22,13 +22,3 @@ def at_corner(plan: Plan, w: Work, t: float) -> bool:
 def driven_by(w: Work, c: int, t: float) -> float:
     """How far the obstacle of contact c goes in what time t is rounded by, and a phase that callbacks make of it."""
     return float(4.0 * EPS * abs(t * w.gap_t[c]))
-
-
-def rounded_by(plan: Plan, w: Work, c: int, t: float) -> float:
-    """What the velocity of obstacle c changes by in what time is rounded by, and moved off a corner."""
-    return float((plan.margin + 4.0 * EPS * abs(t)) * abs(w.bias[c]))
-
-
-def just_after(plan: Plan, t: float) -> float:
-    """Up to where times asked for are the end t of a step, but for rounding."""
-    return float(t + LATE * plan.h + 4.0 * EPS * abs(t))

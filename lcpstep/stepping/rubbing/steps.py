@@ -6,8 +6,6 @@ import cython
 
 from lcpstep.events.contacts.held import know_rows
 from lcpstep.events.contacts.loose import straying
-from lcpstep.kernels.record import Record
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import after
 from lcpstep.stepping.rubbing.stride import stride
@@ -17,9 +15,9 @@ from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 class RubbingSteps(Strides):
     """The motion of `Strides`, which goes on by a step, or up to the first event within it."""
 
-    def proceed(self, record: Record, tally: Tally) -> int:
+    def proceed(self) -> int:
         """Go on up to the first event, no further than the end of the step at hand; a status."""
-        return stride(self, record, tally)
+        return stride(self)
 
     def straying_at(self, place: float, h: float, level: float) -> int:
         """The first contact that has a row leave its rest at that fraction of the step, which is made up to there.

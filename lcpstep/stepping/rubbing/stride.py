@@ -19,9 +19,7 @@ from lcpstep.events.rows.jumps import breaks
 from lcpstep.events.rows.keep import keep, keep_event
 from lcpstep.events.rows.projection import project
 from lcpstep.kernels.clock import NOISE
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, PROJECTION_FAILED
-from lcpstep.kernels.tally import Tally
 from lcpstep.kernels.vectors import add, clear, copy, product
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.rubbing.found import (
@@ -45,11 +43,11 @@ LANDINGS = 3  # of a state between, by Newton's method
 TORN = -2  # in place of a guard
 
 
-def stride(s: Strides, record: Record, tally: Tally) -> int:
+def stride(s: Strides) -> int:
     """What is left of the step, up to the first event within it; what comes next into `next`. A status."""
-    t0, goal = s.clock.t0, s.goal(tally.steps)
+    t0, goal = s.clock.t0, s.goal(s.clock.tally.steps)
     if goal <= t0:
-        end_step(s, record, tally)
+        end_step(s)
         return DONE
     s.rows.culprit = -1
     border = min(goal, s.clock.high)
@@ -66,23 +64,23 @@ def stride(s: Strides, record: Record, tally: Tally) -> int:
         goal = border if s.tolerance > 0.0 else goal
     g, tau = s.guard, s.tau
     if g < 0:
-        take_over(s, record, border, h)
+        take_over(s, border, h)
         arm(s)
         arrive_with(s, border)
         if border >= goal:
-            end_step(s, record, tally)
+            end_step(s)
         elif border < s.clock.high:
-            keep_event(s.rows, record, border)
+            keep_event(s.rows, border)
         return DONE
     if tau == NOWHERE:
-        return pass_by(s, record, s.found * h)
+        return pass_by(s, s.found * h)
     if of_force(s, g):
         code = look_ahead(s, g // GUARDS, h, tau)
         if code != DONE:
             return code
         if tau > 0.0 and not s.step(t0, tau):
             return failed(s)
-    take_over(s, record, border if tau >= h else min(s.clock.after(tau), border), tau)
+    take_over(s, border if tau >= h else min(s.clock.after(tau), border), tau)
     return arrive(s, g)
 
 
@@ -142,12 +140,12 @@ def failed(s: Strides) -> int:
     return PAINLEVE_INCONSISTENT if s.rows.culprit >= 0 else NOT_FINITE
 
 
-def pass_by(s: Strides, record: Record, tau: float) -> int:
+def pass_by(s: Strides, tau: float) -> int:
     """Go on to where an event was expected that there is none of, and look again from there."""
     if not s.step(s.clock.t0, tau):
         return failed(s)
-    take_over(s, record, s.clock.after(tau), tau)
-    keep_event(s.rows, record, s.clock.t0)
+    take_over(s, s.clock.after(tau), tau)
+    keep_event(s.rows, s.clock.t0)
     return DONE
 
 
@@ -169,20 +167,20 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
     return code
 
 
-def take_over(s: Strides, record: Record, t: float, tau: float) -> None:
+def take_over(s: Strides, t: float, tau: float) -> None:
     """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
     interrupt(s, t, tau)
     if tau > 0.0:
         if s.rows.n_held > 0:
             put_end_back(s)
             s.based = True
-        pressed = keep_between(s, record, t, tau)
+        pressed = keep_between(s, t, tau)
         press(s, pressed, 1.0)
         copy(s.y, s.y_new, s.n)
     s.clock.start_at(t)
-    while record.wants(t, t >= s.clock.t_end):  # the end of the span
-        keep(s.rows, record, record.awaited(), s.y)
-        record.next_time += 1
+    while s.clock.record.wants(t, t >= s.clock.t_end):  # the end of the span
+        keep(s.rows, s.clock.record.awaited(), s.y)
+        s.clock.record.next_time += 1
 
 
 def put_end_back(s: Strides) -> None:
@@ -195,28 +193,28 @@ def put_end_back(s: Strides) -> None:
     add(s.push, 1.0, s.rows.near, s.n_r)
 
 
-def keep_between(s: Strides, record: Record, t: float, tau: float) -> float:
+def keep_between(s: Strides, t: float, tau: float) -> float:
     """Keep the states asked for before the end t of the step, on the rows held, and its dense output.
 
     Returned: up to which fraction of the step impulses have been kept.
     """
     pressed = 0.0
     s.length = tau
-    if record.dense_size > 0 or record.wants(t, False):
+    if s.clock.record.dense_size > 0 or s.clock.record.wants(t, False):
         s.complete(s.clock.t0, tau)
-    while record.wants(t, False):
-        place = (record.awaited() - s.clock.t0) / tau
+    while s.clock.record.wants(t, False):
+        place = (s.clock.record.awaited() - s.clock.t0) / tau
         copy(s.seen, s.y, s.n)
         if place > 0.0:
             press(s, pressed, place)
             s.at(place, s.seen)
             if s.rows.n_held > 0:
-                put_between(s, record.awaited())
+                put_between(s, s.clock.record.awaited())
                 s.based = False
             pressed = place
-        keep(s.rows, record, record.awaited(), s.seen)
-        record.next_time += 1
-    record.store(s.F, s.length)
+        keep(s.rows, s.clock.record.awaited(), s.seen)
+        s.clock.record.next_time += 1
+    s.clock.record.store(s.F, s.length)
     return pressed
 
 
@@ -270,11 +268,11 @@ def arrive_with(s: Strides, t: float) -> None:
         copy(s.begin_bend, s.end_bend, s.n_c)
 
 
-def end_step(s: Strides, record: Record, tally: Tally) -> None:
+def end_step(s: Strides) -> None:
     """A step has ended; its state is kept where it is asked for."""
-    tally.steps += 1
-    if record.is_due(tally.steps):
-        if record.keeps_events():
-            keep_event(s.rows, record, s.clock.t0)
+    s.clock.tally.steps += 1
+    if s.clock.record.is_due(s.clock.tally.steps):
+        if s.clock.record.keeps_events():
+            keep_event(s.rows, s.clock.t0)
         else:
-            keep(s.rows, record, s.clock.t0, s.y)
+            keep(s.rows, s.clock.t0, s.y)

@@ -52,17 +52,15 @@ def unmoved(plan: Plan, s: State, c: Rows, i: int) -> float:
     return RESOLUTION * size_of_product(c.H, s.q, i, s.n_q) / plan.h
 
 
-def one_after_another(
-    m: Model, plan: Plan, s: State, c: Rows, b: Blows, t_next: float, external: bool, solved: bool
-) -> int:
+def one_after_another(m: Model, plan: Plan, s: State, c: Rows, b: Blows, t_next: float) -> int:
     """Blow after blow until nothing approaches; then all active contacts take part again, with all their impulses."""
-    if not solved:
+    if not c.solved:
         prepare(m, plan, s, c, s.active, t_next)
-    while solved or choose(s, c, b):
-        code = impulses(m, plan, s, c, s.active, t_next, not b.last, external, solved)
+    while c.solved or choose(s, c, b):
+        code = impulses(m, plan, s, c, s.active, t_next, not b.last)
         if code == NEED_LCP:
             return code
-        solved = False
+        c.solved = False
         if code != FINISHED:
             all_of_them(s, c, b)
             return code

@@ -139,6 +139,7 @@ class Rows:
     n_c, n_t, n_j, n       contacts, tangents (none or n_c), joints, and all of them
     n_f                    tangents that take part in the step at hand
     projected, turning     positions are repaired; joints' rows change
+    external, solved       the contacts' problems are handed out (NEED_LCP); one has come back, in problem.impulse
     H : (n, n_q)           rows of the velocities: H v + H_t is the rate; T and J: those of tangents and of joints
     H_t : (n,)             likewise T_t, J_t
     J_start : (n_j, n_q)   at the start of the step
@@ -160,7 +161,7 @@ class Rows:
     Parameters
     ----------
     joints, tangents : Model;  n_c, n_t : int;  coefficients : Coefficients;  tangent_restitution : (n_c,)
-    in_turn, projected : bool
+    in_turn, projected, external : bool
     problem : ContactProblem for n rows
     """
 
@@ -174,6 +175,7 @@ class Rows:
         tangent_restitution: Any,
         in_turn: bool,
         projected: bool,
+        external: bool,
         problem: ContactProblem,
     ) -> None:
         n_q, n_j = joints.n_q, joints.n_c
@@ -182,7 +184,7 @@ class Rows:
         self.coefficients, self.in_turn = coefficients, in_turn
         self.coefficients.use(self.problem.mu)
         self.n_c, self.n_t, self.n_j, self.n, self.n_f = n_c, n_t, n_j, n, 0
-        self.projected, self.turning = projected, not joints.flat
+        self.projected, self.turning, self.external, self.solved = projected, not joints.flat, external, False
         self.arrays = {"p": np.zeros(n), "failed": np.zeros(n_j, dtype=np.intp), "r_T": tangent_restitution}
         self.tangent_restitution = doubles(tangent_restitution)
         self.p, self.failed = doubles(self.arrays["p"]), indices(self.arrays["failed"])

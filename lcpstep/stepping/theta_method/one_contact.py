@@ -23,9 +23,9 @@ EVENTS = 2  # that a step may note
 
 
 def in_registers(
-    m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, first: int, last: int, external: bool
+    m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, first: int, last: int
 ) -> None:
-    """Steps up to `last`, or to where the log is full; `external`: or to the first with a problem to solve.
+    """Steps up to `last`, or to where the log is full; or to the first with a problem to be handed out.
 
     `theta_step` has that solved by what is no kernel, and says so where a step makes a number infinite.
     """
@@ -34,7 +34,7 @@ def in_registers(
         before = s.steps
         if s.closed[0] == 0:
             coast(m, plan, s, record, t0, first, last)
-        if not external and plan.W[0] > 0.0:
+        if not c.external and plan.W[0] > 0.0:
             press(m, plan, s, c, record, t0, first, last)
 
 

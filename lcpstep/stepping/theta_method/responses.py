@@ -9,7 +9,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.dynamics import gap_rates
-from lcpstep.kernels.linear import factorise, solve
+from lcpstep.kernels.linear import invert_matrix
 from lcpstep.kernels.model import Model
 from lcpstep.pointers import after
 from lcpstep.stepping.constraints.directions import mobilities
@@ -57,13 +57,7 @@ def refit(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
     n, x = s.n_q, plan.h * plan.theta
     for i in range(n * n):
         s.A[i] = m.M[i] + x * m.C[i] + x * x * m.K[i]
-    factorise(s.A, s.pivots, n)
-    for j in range(n):
-        for i in range(n):
-            s.R[i] = plan.h if i == j else 0.0
-        solve(s.A, s.pivots, s.R, n)
-        for i in range(n):
-            plan.A_f[i * n + j] = s.R[i]
+    invert_matrix(s.A, s.pivots, plan.h, s.R, plan.A_f, n)
     for i in range(n):
         for j in range(n):
             stiff = damped = 0.0

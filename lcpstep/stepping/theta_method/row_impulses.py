@@ -26,20 +26,17 @@ from lcpstep.stepping.theta_method.turned_rows import put_rows_on_joints, sweep_
 UNTOLD = 1e-9  # of the terms of a rate: what joints may leave of it where they leave nothing of its row
 
 
-def impulses(
-    m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, rebounds: bool, external: bool,
-    solved: bool,
-) -> int:  # fmt: skip
+def impulses(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, rebounds: bool) -> int:
     """Impulses of the rows that take part, for the velocities before the blow at hand and the position at hand."""
     impact = pose(m, plan, s, c, n_a, t_next, rebounds)
     n_k, rate, ids = n_a + c.n_f + c.n_j, c.problem.rate, c.problem.ids
     if not (finite(rate, n_k) and (plan.constant or usable(plan.W, ids, n_k, c.n))):
         return NOT_FINITE
     if n_a > 0:
-        if external and not solved:
+        if c.external and not c.solved:
             return NEED_LCP
         s.problems += 1
-        if not solved and not solve(m, s, c, n_a, c.n_f, impact):
+        if not c.solved and not solve(m, s, c, n_a, c.n_f, impact):
             forget_tiny(c.problem.rate, n_a + c.n_f)
             if not solve(m, s, c, n_a, c.n_f, impact):
                 impact = pose(m, plan, s, c, n_a, t_next, False)

@@ -4,4 +4,4 @@ cdef class Steps(Stepwise):
     cdef readonly State s
     cdef readonly Rows rows
     cdef readonly Record record
-    cdef bint external, solved, single
+    cdef bint single

@@ -20,18 +20,14 @@ from lcpstep.stepping.theta_method.theta_step import take_step
 class Steps(Stepwise):
     """The loop over steps.
 
-    external   the contacts' problems are handed out (NEED_LCP)
-    solved     one of them has been solved
-
     Parameters
     ----------
-    m : Model;  plan : Plan;  s : State;  rows : Rows;  record : Record;  external : bool
+    m : Model;  plan : Plan;  s : State;  rows : Rows;  record : Record
     """
 
-    def __init__(self, m: Model, plan: Plan, s: State, rows: Rows, record: Record, external: bool) -> None:
+    def __init__(self, m: Model, plan: Plan, s: State, rows: Rows, record: Record) -> None:
         super().__init__()
-        self.m, self.plan, self.s, self.rows, self.record, self.external = m, plan, s, rows, record, external
-        self.solved = False
+        self.m, self.plan, self.s, self.rows, self.record = m, plan, s, rows, record
         self.rows.blows.begin(self.s, self.rows)
         single = m.linear and m.flat and s.n_c == 1 and s.n_q == 1
         self.single = single and rows.n == 1 and not rows.projected
@@ -48,7 +44,7 @@ class Steps(Stepwise):
     @cython.ccall
     def run(self, t0: float, first: int, last: int, solved: bool) -> int:
         """`take`, called from Python; `solved`: the problem at hand is."""
-        self.solved = solved
+        self.rows.solved = solved
         with cython.nogil:
             return self.take(t0, first, last)
 
@@ -60,11 +56,9 @@ class Steps(Stepwise):
         """A step, after those that are taken in registers; says why no more can be taken."""
         if self.record.full(2 * self.s.n_c):
             return BUFFER_FULL
-        if self.single and not self.solved:
+        if self.single and not self.rows.solved:
             end = self.record.untimed_until(self.plan.h, self.t0, self.first, self.last)
-            in_registers(
-                self.m, self.plan, self.s, self.rows, self.record, self.t0, self.first, end, self.external
-            )
+            in_registers(self.m, self.plan, self.s, self.rows, self.record, self.t0, self.first, end)
             if not (finite(self.s.g, 1) and finite(self.s.u, 1)):
                 return NOT_FINITE
             if self.s.steps >= self.last:
@@ -73,12 +67,9 @@ class Steps(Stepwise):
                 return BUFFER_FULL
         k, events = self.s.steps - self.first, self.record.event
         t, t_next = self.t0 + self.plan.h * k, self.t0 + self.plan.h * (k + 1)
-        code = take_step(
-            self.m, self.plan, self.s, self.rows, self.record, t, t_next, self.external, self.solved
-        )
+        code = take_step(self.m, self.plan, self.s, self.rows, self.record, t, t_next)
         if code != FINISHED:
             return code
-        self.solved = False
         return end_step(self.m, self.plan, self.s, self.rows, self.record, t, t_next, events)
 
 

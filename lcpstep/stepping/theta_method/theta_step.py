@@ -58,26 +58,13 @@ from lcpstep.stepping.theta_method.row_impulses import (
 )
 
 
-def take_step(
-    m: Model,
-    plan: Plan,
-    s: State,
-    c: Rows,
-    record: Record,
-    t: float,
-    t_next: float,
-    external: bool,
-    solved: bool,
-) -> int:
-    """One step into next_q, next_v and the impulses; its events are noted. Says how it went.
-
-    `external`: the contacts' problem is handed out (NEED_LCP) and comes back in c.problem.impulse (solved = True).
-    """
-    if not solved:
+def take_step(m: Model, plan: Plan, s: State, c: Rows, record: Record, t: float, t_next: float) -> int:
+    """One step into next_q, next_v and the impulses; its events are noted. Says how it went."""
+    if not c.solved:
         predict_active(m, plan, s, c, t)
-    code = step(m, plan, s, c, t, t_next, external, solved)
+    code = step(m, plan, s, c, t, t_next)
     while c.projected and code == FINISHED and closes_again(m, plan, s, c, t_next):
-        code = step(m, plan, s, c, t, t_next, external, False)
+        code = step(m, plan, s, c, t, t_next)
     if code != FINISHED:
         return code
     log_events(m, s, c, record, t_next)
@@ -132,9 +119,7 @@ def closes_again(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> bool
     return more > n_a
 
 
-def step(
-    m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float, external: bool, solved: bool
-) -> int:
+def step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> int:
     """One step with the active contacts into next_q, next_v, and the impulses."""
     n_a, c.n_f = s.active, 0
     if c.n > c.n_c:
@@ -149,7 +134,7 @@ def step(
         gap_rates(c.joints, t, s.q, s.v, c.J_start, c.J_t)
     if n_a + c.n_j == 0:
         clear(c.p, c.n)
-    if not solved:
+    if not c.solved:
         copy(s.next_v, s.v, s.n_q)
         s.iteration = 0
     if m.linear:
@@ -162,17 +147,17 @@ def step(
         if not finite(s.v_free, s.n_q):
             return NOT_FINITE
         if n_a + c.n_j > 0:
-            if not solved:
+            if not c.solved:
                 c.blows.several = n_a > 1 and not c.in_turn and separates(plan, s, c, c.blows, n_a)
             if c.blows.several:
-                code = one_after_another(m, plan, s, c, c.blows, t_next, external, solved)
+                code = one_after_another(m, plan, s, c, c.blows, t_next)
             else:
                 if c.n_j > 0 or not plan.constant:
                     prepare(m, plan, s, c, n_a, t_next)
-                code = impulses(m, plan, s, c, n_a, t_next, True, external, solved)
+                code = impulses(m, plan, s, c, n_a, t_next, True)
             if code != FINISHED:
                 return code
-            solved, n_a = False, s.active
+            c.solved, n_a = False, s.active
         n_k = n_a + c.n_f + c.n_j
         if c.n_f == 0 and m.linear and not c.turning:
             apply_once(plan, s, c, n_k)
