@@ -60,7 +60,7 @@ class Attempts(Parts):
                 end, entire, until = start + until, False, inf
         # Nothing of a step comes after the multiple that it ends at, or before what was kept, by rounding
         stamp(self.record, self.row, self.event, self.to_time, self.to_time)
-        for k in range(max(self.row, 1), self.record.row):
+        for k in range(self.row if self.row > 0 else 1, self.record.row):
             self.record.t[k] = max(self.record.t[k], self.record.t[k - 1])
         self.full = self.two.code == BUFFER_FULL and self.event + self.row > 0
         if not self.full:

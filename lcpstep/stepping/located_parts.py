@@ -92,10 +92,10 @@ class Parts(Control):
         self, way: Steps, make: Callable[[float], dict[str, Any]], span: tuple[float, float], h: float,
         tolerance: float, order: int,
     ) -> None:  # fmt: skip
-        super().__init__(way.record, make, span, h, tolerance, order)
+        super().__init__(way.w.record, make, span, h, tolerance, order)
         plan, w = way.plan, way.w
         self.way, self.m, self.plan, self.w = way, way.m, plan, w
-        self.saved, self.own_row = Work(w.n_q, w.n_c), np.zeros(way.record.row_size)
+        self.saved, self.own_row = Work(w.n_q, w.n_c), np.zeros(way.w.record.row_size)
         self.last_row = doubles(self.own_row)
         self.n_numbers, self.n_marks = len(w.numbers), len(w.marks)
         self.n_matrices = 0 if plan.constant else len(w.matrices)

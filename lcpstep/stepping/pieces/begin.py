@@ -6,7 +6,6 @@ import cython
 
 from lcpstep.kernels.dynamics import external_force
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import abs
 from lcpstep.stepping.pieces.codes import CLOSED, EPS, FINISHED, GROUND, NOT_FINITE
@@ -18,7 +17,7 @@ from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
 
 
-def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
+def begin_motion(m: Model, plan: Plan, w: Work, t: float) -> int:
     """Forces, gaps and status of the initial state, which is kept where states are."""
     w.low, w.high = find_corners(plan, w, t)
     w.margin = plan.margin
@@ -49,7 +48,7 @@ def begin_motion(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int
             if abs(w.rate[c]) <= 64 * EPS * size + rounded:
                 w.rate[c], w.status[c] = 0.0, CLOSED
                 w.closed_now += 1
-    if record.n_times == 0:
-        keep(w, record, t, 0.0)
-    keep_now(w, record, t)
+    if w.record.n_times == 0:
+        keep(w, t, 0.0)
+    keep_now(w, t)
     return FINISHED

@@ -13,7 +13,6 @@ import cython
 
 from lcpstep.kernels.linear import solve_factored
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import add, clear, copy, product
 from lcpstep.pointers import Doubles, abs, after, max, min
 from lcpstep.stepping.pieces.chosen import solve_chosen
@@ -25,7 +24,7 @@ from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import count_turn, release, release_time, stick
 
 
-def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) -> bool:
+def hold(m: Model, plan: Plan, w: Work, place: int, t: float) -> bool:
     """Forces of the contacts that rest from w.alpha, and the acceleration with them; who needs none opens.
 
     All that touch at rest are decided in one problem: to add them one by one could go on for ever.
@@ -62,11 +61,11 @@ def hold(m: Model, plan: Plan, w: Work, record: Record, place: int, t: float) ->
             if alpha > 0.0:
                 if w.status[c] == CLOSED:
                     at = release_time(w, c, t, rest, alpha / W[c * w.n_c + c])
-                    release(m, plan, w, record, c, at, 0.0)
+                    release(m, plan, w, c, at, 0.0)
                 w.grounded[c] = LEFT
                 continue
         if w.status[c] == OPEN:
-            stick(w, record, c, t)
+            stick(w, c, t)
             count_turn(m, plan, w, c, 0.0, False)
         w.older[c], w.older_time[c] = force, t + 0.5 * rest
         w.force_now[c] = force
@@ -192,7 +191,7 @@ def zero_rounding(plan: Plan, w: Work) -> None:
                 w.v[i] = 0.0
 
 
-def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) -> bool:
+def land(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
     """Gap velocities of closed contacts back to zero, with the normals at the end of the piece that began at t.
 
     A contact that would have to be pulled for that opens. Where the motion is the trapezoidal rule's, impulses act as
@@ -226,5 +225,5 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float) ->
                 lost = 2.0 * u / (tau * W[c * w.n_c + c])
                 force = w.force_now[c]
                 share = force / (force + lost) if force > 0.0 else 0.0
-                release(m, plan, w, record, c, t + tau * share, u)
+                release(m, plan, w, c, t + tau * share, u)
     return True

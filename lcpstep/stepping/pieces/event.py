@@ -6,7 +6,6 @@ import cython
 
 from lcpstep.kernels.linear import grow_factor, solve_factored
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import add, product
 from lcpstep.pointers import Doubles, abs, after, max
 from lcpstep.stepping.pieces.codes import (
@@ -27,19 +26,19 @@ from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import count_turn, idle, stick
 
 
-def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
+def event(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     """The impact of contact c at w.sigma of the step that began at t, or that of a corner, and what it changes."""
     now = t + w.sigma
     if c != CORNER and w.rate[c] >= -ROUNDING * speed_terms(plan, w, c):  # a touch: it does not strike
         w.gap[c], w.grounded[c] = 0.0, GROUND
         if w.rate[c] <= ROUNDING * speed_terms(plan, w, c):
-            stick(w, record, c, now)
+            stick(w, c, now)
             count_turn(m, plan, w, c, 0.0, False)
         idle(w)
         return FINISHED
     if not renew_mobility(m, plan, w, now):
         return NOT_FINITE
-    n_s = strike(m, plan, w, record, c, now)
+    n_s = strike(m, plan, w, c, now)
     if n_s <= 0:
         idle(w)
         return LCP_FAILED if n_s < 0 else FINISHED
@@ -53,8 +52,8 @@ def event(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> in
         zero_speeds(w, w.v_try)
     if not renew_forces(m, plan, w, now):
         return NOT_FINITE
-    if record.keeps_event(now):
-        keep(w, record, now, 1.0)
+    if w.record.keeps_event(now):
+        keep(w, now, 1.0)
     return FINISHED
 
 

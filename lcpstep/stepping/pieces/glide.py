@@ -11,7 +11,6 @@ from lcpstep.kernels.dynamics import external_force, moves, obstacle
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.one_row import keep_one
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-from lcpstep.kernels.record import Record
 from lcpstep.pointers import abs, inf
 from lcpstep.stepping.pieces.carried import PUT_BACK
 from lcpstep.stepping.pieces.codes import SAME_TIME
@@ -20,7 +19,7 @@ from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
 
 
-def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, last: int) -> None:
+def glide(m: Model, plan: Plan, w: Work, t0: float, first: int, last: int) -> None:
     """Steps of one linear degree of freedom without events, up to the first that may have one.
 
     The arithmetic is that of `step` to the last bit; only the state stays in registers, which halves the time.
@@ -35,10 +34,10 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
         if moving:
             obstacle(m, within(w, t0 + h * (w.steps - first)), w.q, w.v)
             s = m.motion_now[2]
-    kept = record.last_time()
+    kept = w.record.last_time()
     k = start = w.steps
-    last = record.room_until(k, last)
-    due = k + record.every - k % record.every if record.every > 0 else 0
+    last = w.record.room_until(k, last)
+    due = k + w.record.every - k % w.record.every if w.record.every > 0 else 0
     while k < last:
         t = t0 + h * (k - first) + h
         if t > w.high:
@@ -74,15 +73,15 @@ def glide(m: Model, plan: Plan, w: Work, record: Record, t0: float, first: int, 
         q, v, f = q + h * (v + 0.5 * h * a), v + h * a, f_next
         k += 1
         if k == due:
-            due += record.every
+            due += w.record.every
             now = t0 + h * (k - first)
             if not contact or kept >= now:
                 w.q[0], w.v[0] = q, v
-                keep(w, record, now, 0.0)
+                keep(w, now, 0.0)
             elif m.carried:  # the obstacle has told where the frame is, at `now` up to a rounding of the time
-                keep_one(record, now, PUT_BACK, q - m.frame_now[0], v - m.frame_now[1], w.impulse)
+                keep_one(w.record, now, PUT_BACK, q - m.frame_now[0], v - m.frame_now[1], w.impulse)
             else:
-                keep_one(record, now, 0.0, q, v, w.impulse)
+                keep_one(w.record, now, 0.0, q, v, w.impulse)
             kept = now
     w.q[0], w.v[0], w.force[0] = q, v, f
     if contact:

@@ -12,7 +12,6 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.together import CROSSED, TOGETHER, gap_rounding, moment_untold, order_matters
 from lcpstep.kernels.vectors import clear, product
 from lcpstep.pointers import Doubles, abs, inf, max, min
@@ -50,20 +49,20 @@ SAME_SPEED = 1e-6  # relative: contacts that close at one time, and are as alike
 SMALL = 1e-3  # beside its change: a gap velocity that may be but rounding
 
 
-def strike(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float) -> int:
+def strike(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     """The impact of contact `first`, and of those that fire with it, or (CORNER) of those whose velocity jumps.
 
     Returns how many took part, -1 where the impact was not solved. What is held from all sides cannot leave every
     obstacle as its restitution asks, and speeds carried along beside the velocities may not agree with these: where
     no impulses answer, they but end the approach that the velocities have.
     """
-    n_s = answer(m, plan, w, record, first, t, first == CORNER)
+    n_s = answer(m, plan, w, first, t, first == CORNER)
     if n_s >= 0 or first == CORNER:
         return n_s
     for c in range(w.n_c):
         w.rate[c], w.fall[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c], 0.0
     if w.rate[first] < 0.0:
-        return answer(m, plan, w, record, first, t, True)
+        return answer(m, plan, w, first, t, True)
     touch(w, first)
     return 0
 
@@ -74,7 +73,7 @@ def touch(w: Work, c: int) -> None:
     w.grounded[c], w.touching = GROUND, True
 
 
-def answer(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float, drifted: bool) -> int:
+def answer(m: Model, plan: Plan, w: Work, first: int, t: float, drifted: bool) -> int:
     """One attempt at an impact, at time t. Drifted, the second one: what is closed has speeds too, and none rebounds.
 
     At a corner closed contacts have speeds as well, and those that strike rebound.
@@ -112,7 +111,7 @@ def answer(m: Model, plan: Plan, w: Work, record: Record, first: int, t: float, 
     if jump(plan, w, n_s) == 0.0:
         idle(w)
     for k in range(n_s):
-        after_impact(m, plan, w, record, w.chosen[k], w.z[k], t)
+        after_impact(m, plan, w, w.chosen[k], w.z[k], t)
     w.events += 1
     return n_s
 
@@ -245,16 +244,16 @@ def push(plan: Plan, w: Work, d: int, p: float) -> None:
                 w.grounded[c], w.touching = GROUND, True
 
 
-def after_impact(m: Model, plan: Plan, w: Work, record: Record, c: int, p: float, t: float) -> None:
+def after_impact(m: Model, plan: Plan, w: Work, c: int, p: float, t: float) -> None:
     """Note the impact of a contact; the velocity it leaves with, to the last digit."""
     r, before = m.restitution[c], min(w.before[c], 0.0)
     w.impulse[c] += p
     if w.status[c] == CLOSED:
         if p > 0.0:
             w.rate[c] = 0.0
-            record.note(t, c, 0.0, 0.0, p, IMPACT)
+            w.record.note(t, c, 0.0, 0.0, p, IMPACT)
         elif w.rate[c] > ROUNDING * speed_terms(plan, w, c):
-            release(m, plan, w, record, c, t, w.rate[c])
+            release(m, plan, w, c, t, w.rate[c])
         else:
             w.rate[c] = 0.0
         return
@@ -268,13 +267,13 @@ def after_impact(m: Model, plan: Plan, w: Work, record: Record, c: int, p: float
         if w.half[c] < 0.0 and w.close_hits[c] < IN_A_ROW:
             T = min(r * before / w.half[c] / (1.0 - r), w.end - w.sigma)
             p += -2.0 * w.half[c] * T / w.W[c * w.n_c + c]
-        record.note(t + T, c, before, 0.0, p, ACCUMULATION)
-        stick(w, record, c, t + T)
+        w.record.note(t + T, c, before, 0.0, p, ACCUMULATION)
+        stick(w, c, t + T)
         return
     w.rate[c] = -r * before if r > 0.0 else 0.0
     w.fall[c] = w.rate[c] if plan.plain and plan.steady else 0.0
-    record.note(t, c, before, w.rate[c], p, IMPACT)
+    w.record.note(t, c, before, w.rate[c], p, IMPACT)
     if r == 0.0:
-        stick(w, record, c, t)
+        stick(w, c, t)
     elif before == 0.0:
         w.touching = True

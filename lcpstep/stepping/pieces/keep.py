@@ -6,7 +6,6 @@ import cython
 
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import add, copy
 from lcpstep.pointers import max, min
 from lcpstep.stepping.pieces.smooth import look_along, refactor, settle_state
@@ -14,17 +13,17 @@ from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
 
 
-def keep_times(w: Work, record: Record, now: float, before: float) -> None:
+def keep_times(w: Work, now: float, before: float) -> None:
     """Keep the states asked for before the given time, along the piece that begins now."""
-    while record.awaited() < before:
-        look_along(w, max(0.0, record.awaited() - now))
-        record.keep_awaited(w.q_try, w.v_try, w.impulse)
+    while w.record.awaited() < before:
+        look_along(w, max(0.0, w.record.awaited() - now))
+        w.record.keep_awaited(w.q_try, w.v_try, w.impulse)
 
 
-def keep_now(w: Work, record: Record, until: float) -> None:
+def keep_now(w: Work, until: float) -> None:
     """Keep the current state for the times asked for up to the given one."""
-    while record.awaited() <= until:
-        record.keep_awaited(w.q, w.v, w.impulse)
+    while w.record.awaited() <= until:
+        w.record.keep_awaited(w.q, w.v, w.impulse)
 
 
 def remember(w: Work) -> None:
@@ -35,7 +34,7 @@ def remember(w: Work) -> None:
     copy(w.impulse_from, w.impulse, w.n_c)
 
 
-def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau: float, end: float) -> None:
+def keep_between(m: Model, plan: Plan, w: Work, base: float, tau: float, end: float) -> None:
     """Keep the states asked for within the piece that has been made, bent so that they meet the state at its end.
 
     Velocities along the acceleration of the base alone would be of order one.
@@ -44,8 +43,8 @@ def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau
     for c in range(n_c):
         w.residual[c] = w.impulse[c] - w.impulse_from[c]  # which `settle_state` leaves alone
         w.impulse[c] = w.impulse_from[c]
-    while record.awaited() < end:
-        t = record.awaited()
+    while w.record.awaited() < end:
+        t = w.record.awaited()
         s = min(max(0.0, t - base), tau)
         r = s / tau
         for i in range(n):
@@ -56,20 +55,20 @@ def keep_between(m: Model, plan: Plan, w: Work, record: Record, base: float, tau
         add(w.impulse, r - share, w.residual, n_c)
         share = r
         settle_state(m, plan, w, t, w.q_try)
-        record.keep_awaited(w.q_try, w.v_try, w.impulse)
+        w.record.keep_awaited(w.q_try, w.v_try, w.impulse)
     add(w.impulse, 1.0 - share, w.residual, n_c)
     if not plan.constant:  # `settle_state` has looked elsewhere
         gap_rates(m, within(w, base + tau), w.q, w.v, w.G, w.gap_t)
         refactor(m, w, base + tau)
 
 
-def keep(w: Work, record: Record, t: float, jump: float) -> None:
+def keep(w: Work, t: float, jump: float) -> None:
     """Keep the current state; states at one time share a row. Jump: 1 where the velocity may have jumped here.
 
     An event at the very end of a step may round to a time after it, which is that of the step's end then.
     """
-    t = max(t, record.last_time())
-    if t == record.last_time():
-        jump = max(jump, record.mode[record.row - 1])
-    record.take_back(t, w.impulse)
-    record.keep(t, jump, w.q, w.v, w.impulse)
+    t = max(t, w.record.last_time())
+    if t == w.record.last_time():
+        jump = max(jump, w.record.mode[w.record.row - 1])
+    w.record.take_back(t, w.impulse)
+    w.record.keep(t, jump, w.q, w.v, w.impulse)

@@ -2,7 +2,6 @@ cdef class Steps(Stepwise):
     cdef public Plan plan
     cdef readonly Model m
     cdef readonly Work w
-    cdef readonly Record record
     cdef bint gliding, ends, watched, asking, told
     cdef double tau
     cdef public double stop

@@ -12,7 +12,6 @@ import cython
 
 from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import clear, copy, finite
 from lcpstep.pointers import abs, inf, max
 from lcpstep.stepping.pieces.begin import begin_motion
@@ -54,12 +53,12 @@ class Steps(Stepwise):
 
     Parameters
     ----------
-    m : Model;  plan : Plan;  w : Work;  record : Record
+    m : Model;  plan : Plan;  w : Work, which has the record of the run
     """
 
-    def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
+    def __init__(self, m: Model, plan: Plan, w: Work) -> None:
         super().__init__()
-        self.m, self.plan, self.w, self.record = m, plan, w, record
+        self.m, self.plan, self.w = m, plan, w
         self.gliding = self.ends = False
         self.tau, self.found, self.stop, self.own = 0.0, NOBODY, inf, 0
         self.watched = obstacles_move(m) or not m.flat
@@ -69,13 +68,13 @@ class Steps(Stepwise):
     def begin(self, t: float) -> int:
         """The initial state, at time t; a code."""
         with cython.nogil:
-            return begin_motion(self.m, self.plan, self.w, self.record, t)
+            return begin_motion(self.m, self.plan, self.w, t)
 
     @cython.ccall
     def put_back(self, end: int) -> None:
         """Kept states up to before the end, which are in the kernels' coordinates, in those of the scene."""
         if end > self.own:
-            put_kept_back(self.m, self.record, self.own, end)
+            put_kept_back(self.m, self.w.record, self.own, end)
             self.own = end
 
     @cython.ccall
@@ -94,10 +93,10 @@ class Steps(Stepwise):
         if not self.w.under_way:
             if self.gliding and (self.w.n_c == 0 or self.w.status[0] == OPEN):
                 if self.w.pausing:
-                    end = self.record.quiet_until(self.w.steps, self.plan.h, t0, first, self.last)
+                    end = self.w.record.quiet_until(self.w.steps, self.plan.h, t0, first, self.last)
                 else:
-                    end = self.record.untimed_until(self.plan.h, t0, first, self.last)
-                glide(self.m, self.plan, self.w, self.record, t0, first, end)
+                    end = self.w.record.untimed_until(self.plan.h, t0, first, self.last)
+                glide(self.m, self.plan, self.w, t0, first, end)
                 if self.w.steps >= self.last:
                     return FINISHED
             begin_step(self.m, self.plan, self.w)
@@ -105,14 +104,14 @@ class Steps(Stepwise):
         if code != FINISHED:
             return code
         t_next = self.w.goal if self.w.pausing else t0 + self.plan.h * (self.w.steps + 1 - first)
-        return end_step(self.plan, self.w, self.record, t_next, self.stop)
+        return end_step(self.plan, self.w, t_next, self.stop)
 
     def step(self, t: float) -> int:
         """The rest of the step that began at t: from w.sigma to its end."""
         while True:
-            if self.record.full(4 * self.w.n_c + 4):
+            if self.w.record.full(4 * self.w.n_c + 4):
                 return BUFFER_FULL
-            if self.record.event + self.w.idle > self.w.events_left:
+            if self.w.record.event + self.w.idle > self.w.events_left:
                 return TOO_MANY_EVENTS
             c, code = NOBODY, FINISHED
             if self.w.sigma >= self.w.end:
@@ -134,7 +133,7 @@ class Steps(Stepwise):
         if code != FINISHED:
             return code
         if self.w.stalled > 0.0 or self.w.events > self.plan.per_step:  # without end
-            code = settle(self.m, self.plan, self.w, self.record, t)
+            code = settle(self.m, self.plan, self.w, t)
             return AGAIN if code == FINISHED else code
         code = self.find(t)
         if code != FINISHED:
@@ -216,19 +215,19 @@ class Steps(Stepwise):
         return NOT_FINITE
 
 
-def end_step(plan: Plan, w: Work, record: Record, t: float, stop: float) -> int:
+def end_step(plan: Plan, w: Work, t: float, stop: float) -> int:
     """What is kept where a step ends, at time t; whether the run goes on.
 
     States asked for at rounding after it are the next step's, which an impact may begin; at the span's end none is.
     """
     late = t + LATE * plan.h + 4.0 * EPS * abs(t)
-    keep_now(w, record, late if late >= stop else t)
+    keep_now(w, late if late >= stop else t)
     w.steps += 1
     w.under_way = False
     if not is_finite(w):
         return NOT_FINITE
-    if record.is_due(w.steps):
-        keep(w, record, t, 0.0)
+    if w.record.is_due(w.steps):
+        keep(w, t, 0.0)
     return FINISHED
 
 

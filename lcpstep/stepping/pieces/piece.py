@@ -11,7 +11,6 @@ import cython
 from lcpstep.kernels.dynamics import gaps, moves, obstacle
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.together import gap_rounding
 from lcpstep.kernels.vectors import copy, distance, product
 from lcpstep.pointers import abs, after, max, min
@@ -46,7 +45,7 @@ POLISHING = 8  # Newton iterations onto a gap that is no quadratic
 BRIEF = 1.0 / 8.0  # of a piece: hops that last no longer obey the acceleration at their beginning
 
 
-def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool:
+def begin_piece(m: Model, plan: Plan, w: Work, t: float) -> bool:
     """Accelerations and gap quadratics of the piece that begins at t."""
     n_c = w.n_c
     place = accelerate(m, plan, w)
@@ -66,7 +65,7 @@ def begin_piece(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool
             w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
     if closed and not plan.constant and not renew_mobility(m, plan, w, t):
         return False
-    if not hold(m, plan, w, record, place, t):
+    if not hold(m, plan, w, place, t):
         return False
     if plan.constant:
         for c in range(n_c):
@@ -210,13 +209,13 @@ def between(m: Model, plan: Plan, w: Work, c: int, t: float, low: float, high: f
     return w.bracket.b
 
 
-def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to_end: bool) -> int:
+def move(m: Model, plan: Plan, w: Work, t: float, tau: float, to_end: bool) -> int:
     """Go on to w.sigma + tau; contacts that were closed all the way stay on the surface."""
     now = t + w.sigma
     end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
-    wanted = record.awaited() < end
+    wanted = w.record.awaited() < end
     if wanted and plan.plain:
-        keep_times(w, record, now, end)
+        keep_times(w, now, end)
     elif wanted:
         remember(w)
     taken = False
@@ -224,7 +223,7 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
         if not advance(m, plan, w, within(w, now), tau):
             return NOT_FINITE
         if not (plan.plain or plan.trapezoidal):
-            taken = take_back(plan, w, record, now + tau)
+            taken = take_back(plan, w, now + tau)
         for c in range(w.n_c):
             w.grounded[c] = 0
     w.sigma = w.end if to_end else w.sigma + tau
@@ -237,7 +236,7 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
         else:
             if not renew_mobility(m, plan, w, now + tau):
                 return NOT_FINITE
-            if not land(m, plan, w, record, now, tau):
+            if not land(m, plan, w, now, tau):
                 return LCP_FAILED
             if taken or penetrates(plan, w):
                 copy(w.q_try, w.q, w.n_q)
@@ -245,11 +244,11 @@ def move(m: Model, plan: Plan, w: Work, record: Record, t: float, tau: float, to
                 w.off = distance(w.q, w.q_try, w.n_q)
             measure(m, w, now + tau)
     if wanted and not plan.plain:
-        keep_between(m, plan, w, record, now, tau, end)
+        keep_between(m, plan, w, now, tau, end)
     return FINISHED
 
 
-def take_back(plan: Plan, w: Work, record: Record, t: float) -> bool:
+def take_back(plan: Plan, w: Work, t: float) -> bool:
     """Contacts let go at the base, that have not risen when their velocity points back, have never left: if any.
 
     The acceleration of the base lets them go; of what it grows to within the piece it tells nothing.
@@ -257,7 +256,7 @@ def take_back(plan: Plan, w: Work, record: Record, t: float) -> bool:
     taken = False
     for c in range(w.n_c):
         if w.grounded[c] == LEFT and w.status[c] == OPEN and w.gap[c] <= plan.slack and w.rate[c] < 0.0:
-            stick(w, record, c, t)
+            stick(w, c, t)
             taken = True
     return taken
 

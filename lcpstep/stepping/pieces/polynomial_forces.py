@@ -11,7 +11,6 @@ import cython
 
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles
 from lcpstep.stepping.pieces.codes import CLOSED, GROUND, LEFT, OPEN, WHOLE
@@ -26,7 +25,7 @@ from lcpstep.stepping.pieces.times import within
 UNDECIDED = -1.0  # in place of a time ahead
 
 
-def load(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float, length: float) -> bool:
+def load(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, length: float) -> bool:
     """Accelerations at the base of a piece, and the forces of closed contacts; who needs none opens."""
     n_c = w.n_c
     if n_c == 0:
@@ -35,7 +34,7 @@ def load(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float,
     w.ahead = 0.0
     if undecided:
         w.ahead = SOON * length
-        return look_ahead(m, plan, w, z, record, t, w.ahead)
+        return look_ahead(m, plan, w, z, t, w.ahead)
     if not free_acceleration(m, w, within(w, t), w.q, w.v, w.free):
         return False
     needed = w.closed_now > 0 or w.touching
@@ -44,10 +43,10 @@ def load(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float,
         w.older[c] = 0.0
     if not needed:
         return True
-    return decide(m, plan, w, record, t, w.q, w.v, t)
+    return decide(m, plan, w, t, w.q, w.v, t)
 
 
-def look_ahead(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float, ahead: float) -> bool:
+def look_ahead(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, ahead: float) -> bool:
     """The same where a contact force vanishes: which contacts are closed from now on shows a little later.
 
     There forces are as their first derivative that does not vanish says. The way there is that of the forces now.
@@ -66,7 +65,7 @@ def look_ahead(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: 
         w.older[c] = 0.0
         if w.grounded[c] == LEFT and w.status[c] == OPEN:
             w.grounded[c] = GROUND
-    if not decide(m, plan, w, record, later, q, v, t):
+    if not decide(m, plan, w, later, q, v, t):
         return False
     for c in range(w.n_c):
         if w.grounded[c] == LEFT and w.status[c] == CLOSED:
@@ -74,21 +73,19 @@ def look_ahead(m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: 
     return True
 
 
-def decide(
-    m: Model, plan: Plan, w: Work, record: Record, at: float, q: Doubles, v: Doubles, t: float
-) -> bool:
+def decide(m: Model, plan: Plan, w: Work, at: float, q: Doubles, v: Doubles, t: float) -> bool:
     """Which contacts are closed from t on, by the accelerations at a state; these without contact are at hand."""
-    n_c, before = w.n_c, record.event
+    n_c, before = w.n_c, w.record.event
     gap_rates(m, at, q, v, w.G, w.gap_t)
     biases(m, w, at, q, v)
     for c in range(n_c):
         w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
     if (w.closed_now > 0 or w.touching) and not plan.constant:
         respond(m, w)
-    if not hold(m, plan, w, record, WHOLE, t):
+    if not hold(m, plan, w, WHOLE, t):
         return False
     for c in range(n_c):
         w.half[c] = 0.5 * (product(w.G, w.a, c, w.n_q) + w.bias[c]) if w.status[c] == OPEN else 0.0
-    if record.event > before and record.keeps_event(t):
-        keep(w, record, t, 1.0)
+    if w.record.event > before and w.record.keeps_event(t):
+        keep(w, t, 1.0)
     return True

@@ -9,7 +9,6 @@ import cython
 
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import copy, distance, product
 from lcpstep.pointers import abs, max, min
 from lcpstep.stepping.pieces.codes import (
@@ -67,8 +66,8 @@ class PolynomialSteps(Steps):
     opens  whether the contact that ends the piece loses its force there, and does not land
     """
 
-    def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
-        super().__init__(m, plan, w, record)
+    def __init__(self, m: Model, plan: Plan, w: Work) -> None:
+        super().__init__(m, plan, w)
         self.z, self.opens = Polynomial(m.n_q, m.n_c), False
 
     def begin_piece(self, t: float) -> int:
@@ -79,7 +78,7 @@ class PolynomialSteps(Steps):
             self.w.sigma = self.w.end
             return AGAIN
         length = min(self.w.end - self.w.sigma, self.plan.longest)
-        if load(self.m, self.plan, self.w, self.z, self.record, now, length):
+        if load(self.m, self.plan, self.w, self.z, now, length):
             return FINISHED
         return LCP_FAILED if is_finite(self.w) else NOT_FINITE
 
@@ -117,14 +116,14 @@ class PolynomialSteps(Steps):
 
     def follow(self, t: float) -> int:
         """Go on along the polynomial."""
-        return follow(self.m, self.plan, self.w, self.z, self.record, t, self.tau, self.ends)
+        return follow(self.m, self.plan, self.w, self.z, t, self.tau, self.ends)
 
     def strike(self, t: float, c: int) -> int:
         """Contact c opens, or lands, or a corner turns velocities."""
         if c != CORNER and self.opens:
-            lose_force(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
+            lose_force(self.m, self.plan, self.w, t + self.w.sigma, c)
             return FINISHED
-        return land(self.m, self.plan, self.w, self.record, t + self.w.sigma, c)
+        return land(self.m, self.plan, self.w, t + self.w.sigma, c)
 
 
 def is_off(plan: Plan, w: Work, z: Polynomial) -> bool:
@@ -137,28 +136,26 @@ def is_off(plan: Plan, w: Work, z: Polynomial) -> bool:
     return doubtful
 
 
-def lose_force(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> None:
+def lose_force(m: Model, plan: Plan, w: Work, t: float, c: int) -> None:
     """The force of closed contact c has vanished: it opens, or where others are closed they decide together."""
     if w.closed_now > 1:
         w.ahead, w.grounded[c] = UNDECIDED, LEFT
         idle(w)
         return
-    release(m, plan, w, record, c, t, 0.0)
+    release(m, plan, w, c, t, 0.0)
     w.grounded[c] = LEFT
-    if record.keeps_event(t):
-        keep(w, record, t, 1.0)
+    if w.record.keeps_event(t):
+        keep(w, t, 1.0)
 
 
-def follow(
-    m: Model, plan: Plan, w: Work, z: Polynomial, record: Record, t: float, tau: float, ends: bool
-) -> int:
+def follow(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, ends: bool) -> int:
     """Go on to w.sigma + tau along the polynomial."""
     now = t + w.sigma
     end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
-    while record.awaited() < end:
-        state_at(m, plan, w, z, now, max(0.0, record.awaited() - now))
-        settle_state(m, plan, w, record.awaited(), z.q)
-        record.keep_awaited(z.q, z.v, w.impulse)
+    while w.record.awaited() < end:
+        state_at(m, plan, w, z, now, max(0.0, w.record.awaited() - now))
+        settle_state(m, plan, w, w.record.awaited(), z.q)
+        w.record.keep_awaited(z.q, z.v, w.impulse)
     w.sigma = w.end if ends else w.sigma + tau
     if tau == 0.0:
         return FINISHED
@@ -209,14 +206,14 @@ def slide(m: Model, w: Work, t: float) -> None:
     newton_step(w, w.v)
 
 
-def land(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int:
+def land(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     """Contact c lands at w.sigma: an impact, or a touch without one."""
     still = ROUNDING * speed_terms(plan, w, c) if c != CORNER else 0.0
     if c != CORNER and w.rate[c] >= -still:
         w.gap[c], w.grounded[c] = 0.0, GROUND
         again = w.sigma - w.last[c] <= SLOW * plan.h
         if w.rate[c] <= still or (again and w.rate[c] <= SLOW * plan.h * acceleration_terms(m, w, c)):
-            stick(w, record, c, t)
+            stick(w, c, t)
             count_turn(m, plan, w, c, 0.0, False)
         w.last[c] = w.sigma
         idle(w)
@@ -229,13 +226,13 @@ def land(m: Model, plan: Plan, w: Work, record: Record, t: float, c: int) -> int
         return NOT_FINITE
     for d in range(w.n_c):  # by which `is_over` judges the next hop
         w.half[d] = 0.5 * (product(w.G, w.a, d, w.n_q) + w.bias[d])
-    n_s = strike(m, plan, w, record, c, t)
+    n_s = strike(m, plan, w, c, t)
     if n_s <= 0:
         idle(w)
         return LCP_FAILED if n_s < 0 else FINISHED
     for k in range(n_s):  # rounding of the velocity must not be larger than that of small hops
         d = w.chosen[k]
         lift(m, plan, w, w.v, d, w.rate[d] - product(w.G, w.v, d, w.n_q) - w.gap_t[d])
-    if record.keeps_event(t):
-        keep(w, record, t, 1.0)
+    if w.record.keeps_event(t):
+        keep(w, t, 1.0)
     return FINISHED

@@ -10,7 +10,6 @@ import cython
 
 from lcpstep.kernels.dynamics import external_force, gap_rates, moves, obstacle
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import abs, min
 from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
@@ -28,8 +27,8 @@ from lcpstep.stepping.pieces.times import at_corner, within
 class QuadraticSteps(Steps):
     """Steps of order two; parameters are those of `Steps`."""
 
-    def __init__(self, m: Model, plan: Plan, w: Work, record: Record) -> None:
-        super().__init__(m, plan, w, record)
+    def __init__(self, m: Model, plan: Plan, w: Work) -> None:
+        super().__init__(m, plan, w)
         self.told, self.asking = m.flat, not m.flat
         self.gliding = plan.trapezoidal and m.flat and m.n_c <= 1 and m.n_q == 1
 
@@ -43,7 +42,7 @@ class QuadraticSteps(Steps):
 
     def begin_piece(self, t: float) -> int:
         """Accelerations and gap quadratics."""
-        if begin_piece(self.m, self.plan, self.w, self.record, t + self.w.sigma):
+        if begin_piece(self.m, self.plan, self.w, t + self.w.sigma):
             return FINISHED
         return LCP_FAILED if is_finite(self.w) else NOT_FINITE
 
@@ -57,7 +56,7 @@ class QuadraticSteps(Steps):
             self.tau = min(rest, self.w.blind)
         else:
             self.found, self.tau = closing(self.m, self.plan, self.w, t, rest)
-            if self.found != NOBODY and take_in_turn(self.m, self.plan, self.w, self.record, t):
+            if self.found != NOBODY and take_in_turn(self.m, self.plan, self.w, t):
                 return AGAIN
         self.ends = self.found == NOBODY and self.tau == rest
         return FINISHED
@@ -68,11 +67,11 @@ class QuadraticSteps(Steps):
 
     def follow(self, t: float) -> int:
         """Go on along the quadratics."""
-        return move(self.m, self.plan, self.w, self.record, t, self.tau, self.ends)
+        return move(self.m, self.plan, self.w, t, self.tau, self.ends)
 
     def strike(self, t: float, c: int) -> int:
         """The impact of contact c, or that of a corner."""
-        return event(self.m, self.plan, self.w, self.record, t, c)
+        return event(self.m, self.plan, self.w, t, c)
 
 
 def measure_at(m: Model, w: Work, at: float, tau: float) -> None:
@@ -105,25 +104,25 @@ def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, 
     return found, until
 
 
-def take_in_turn(m: Model, plan: Plan, w: Work, record: Record, t: float) -> bool:
+def take_in_turn(m: Model, plan: Plan, w: Work, t: float) -> bool:
     """Impacts of many bodies, one after another, where these can be followed so; whether there were any."""
     if not (plan.plain and plan.steady and w.n_c > 1 and w.closed_now == 0):
         return False
-    done = race(m, plan, w, record, t, w.sigma, w.end, room(plan, w, record))
+    done = race(m, plan, w, t, w.sigma, w.end, room(plan, w))
     if done > 0:
         w.sigma = w.q_time[0]
         w.events += done
     return done > 0
 
 
-def room(plan: Plan, w: Work, record: Record) -> int:
+def room(plan: Plan, w: Work) -> int:
     """How many impacts may be taken in turn."""
-    most, left = w.events_left - record.event, plan.per_step - w.events
+    most, left = w.events_left - w.record.event, plan.per_step - w.events
     most = (left if left < most else most) + 1
-    left = record.event_capacity - record.event - 4 * w.n_c
+    left = w.record.event_capacity - w.record.event - 4 * w.n_c
     most = left if left < most else most
-    left = record.row_capacity - record.row - 4
-    return left if record.keeps_events() and left < most else most
+    left = w.record.row_capacity - w.record.row - 4
+    return left if w.record.keeps_events() and left < most else most
 
 
 def next_forces(m: Model, plan: Plan, w: Work, t: float) -> None:

@@ -14,7 +14,6 @@ import cython
 
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-from lcpstep.kernels.record import Record
 from lcpstep.pointers import abs, inf, max
 from lcpstep.stepping.pieces.codes import GROUND, IMPACT, ROUNDING, SAME_TIME
 from lcpstep.stepping.pieces.state import Plan, Work
@@ -23,7 +22,7 @@ CLOSE = 1e-9  # of a step: impacts of a contact as close as this,
 SHORT = 1e-7  # and hops as short as this, are left to the general treatment
 
 
-def race(m: Model, plan: Plan, w: Work, record: Record, t: float, sigma: float, end: float, most: int) -> int:
+def race(m: Model, plan: Plan, w: Work, t: float, sigma: float, end: float, most: int) -> int:
     """Impacts in (sigma, end] of the step that began at t, at most so many; how many there were.
 
     All stand at the time of the last of them, w.q_time[0].
@@ -42,13 +41,13 @@ def race(m: Model, plan: Plan, w: Work, record: Record, t: float, sigma: float, 
         tau = w.next_zero[c]
         if not tau <= end or not ordinary(m, plan, w, c, tau):
             break
-        keep_times(plan, w, record, t, now, tau)
+        keep_times(plan, w, t, now, tau)
         hit(m, w, c, tau, end)
-        record.note(t + tau, c, w.before[c], w.rate[c], w.p[c], IMPACT)
+        w.record.note(t + tau, c, w.before[c], w.rate[c], w.p[c], IMPACT)
         w.lcp_calls += 1
         done, struck, now = done + 1, c, tau
-        if record.keeps_event(t + tau):
-            keep_impact(w, record, t, tau)
+        if w.record.keeps_event(t + tau):
+            keep_impact(w, t, tau)
     if done > 0:
         gather(w, now, struck)
     return done
@@ -62,19 +61,19 @@ def look_at(w: Work, tau: float) -> None:
         w.v_try[i] = w.v[i] + s * w.a[i]
 
 
-def keep_times(plan: Plan, w: Work, record: Record, t: float, now: float, tau: float) -> None:
+def keep_times(plan: Plan, w: Work, t: float, now: float, tau: float) -> None:
     """Keep the states asked for from now on before the impact at tau; to rounding, those there come after it."""
     before = t + tau - SAME_TIME * (abs(t + tau) + plan.h)
-    while record.awaited() < before:
-        look_at(w, max(now, record.awaited() - t))
-        record.keep_awaited(w.q_try, w.v_try, w.impulse)
+    while w.record.awaited() < before:
+        look_at(w, max(now, w.record.awaited() - t))
+        w.record.keep_awaited(w.q_try, w.v_try, w.impulse)
 
 
-def keep_impact(w: Work, record: Record, t: float, tau: float) -> None:
+def keep_impact(w: Work, t: float, tau: float) -> None:
     """Keep the state at tau; states at one time share a row."""
     look_at(w, tau)
-    record.take_back(t + tau, w.impulse)
-    record.keep(t + tau, 1.0, w.q_try, w.v_try, w.impulse)
+    w.record.take_back(t + tau, w.impulse)
+    w.record.keep(t + tau, 1.0, w.q_try, w.v_try, w.impulse)
 
 
 def next_zero(w: Work, c: int, end: float) -> float:

@@ -48,7 +48,8 @@ class LocatedRun(StepRun):
         super().__init__(method, scene, kept, recorder, PORTION)
         self.impulse = self.work.view("impulse")
         kind = QuadraticSteps if method.order == 2 else PolynomialSteps
-        self.loop = kind(self.model, p, self.work, self.recorder.record)
+        self.work.record = recorder.record
+        self.loop = kind(self.model, p, self.work)
         self.loop.stop = scene.t_span[1]
         # The last state known, after a step that failed
         self.finite: tuple[float, Array, Array] | None = None

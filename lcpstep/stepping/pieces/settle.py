@@ -19,7 +19,6 @@ import cython
 
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import add, product
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.pieces.chosen import solve_chosen
@@ -51,7 +50,7 @@ from lcpstep.stepping.pieces.switches import SHORT_TOGETHER, release, stick
 from lcpstep.stepping.pieces.times import within
 
 
-def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
+def settle(m: Model, plan: Plan, w: Work, t: float) -> int:
     """Settle the motion from w.sigma on, with the accelerations of the piece that begins there."""
     n, rest = w.n_q, w.end - w.sigma
     span = min(rest, w.stalled * pow(2.0, w.settled)) if w.events <= plan.per_step else rest
@@ -69,10 +68,10 @@ def settle(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
             add(w.v, p, after(w.MG, c * n), n)
     add(w.q, span, w.v, n)
     w.sigma = w.end if span == rest else w.sigma + span
-    note(m, plan, w, record, now, t + w.sigma, span)
+    note(m, plan, w, now, t + w.sigma, span)
     w.stalled, w.unchanged = 0.0, False
     w.settled += 1.0
-    return begin_again(m, plan, w, record, t + w.sigma)
+    return begin_again(m, plan, w, t + w.sigma)
 
 
 def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:
@@ -100,7 +99,7 @@ def matters(m: Model, w: Work, lasting: bool) -> bool:
     return some
 
 
-def note(m: Model, plan: Plan, w: Work, record: Record, start: float, end: float, span: float) -> None:
+def note(m: Model, plan: Plan, w: Work, start: float, end: float, span: float) -> None:
     """What has become of each contact."""
     n_c = w.n_c
     for c in range(n_c):
@@ -112,11 +111,11 @@ def note(m: Model, plan: Plan, w: Work, record: Record, start: float, end: float
         w.turns[c] = w.hops[c] = w.fall[c] = 0.0
         if pressed and not closed:
             kind = IMPACT if touches and m.restitution[c] == 0.0 else ACCUMULATION
-            record.note(start, c, w.before[c], 0.0 if touches else w.rate[c], w.z[c], kind)
+            w.record.note(start, c, w.before[c], 0.0 if touches else w.rate[c], w.z[c], kind)
             if touches:
-                stick(w, record, c, end)
+                stick(w, c, end)
         elif closed and not pressed and w.rate[c] > ROUNDING * speed_terms(plan, w, c):
-            release(m, plan, w, record, c, end, w.rate[c])
+            release(m, plan, w, c, end, w.rate[c])
         if w.status[c] == CLOSED:
             w.gap[c] = w.rate[c] = 0.0
         elif touches and abs(w.rate[c]) <= ROUNDING * speed_terms(plan, w, c):  # at rest: the forces decide
@@ -126,20 +125,20 @@ def note(m: Model, plan: Plan, w: Work, record: Record, start: float, end: float
             w.grounded[c] = GROUND if w.gap[c] == 0.0 else 0
 
 
-def begin_again(m: Model, plan: Plan, w: Work, record: Record, t: float) -> int:
+def begin_again(m: Model, plan: Plan, w: Work, t: float) -> int:
     """State, gaps and forces where the next piece begins; the states asked for in between."""
     if not plan.plain:
         if not refactor(m, w, t):
             return NOT_FINITE
         put_on_surface(m, plan, w, t)
         measure(m, w, t)
-    while record.awaited() < t:
-        left = t - record.awaited()
+    while w.record.awaited() < t:
+        left = t - w.record.awaited()
         for i in range(w.n_q):
             w.q_try[i] = w.q[i] - left * w.v[i]
-        record.keep_awaited(w.q_try, w.v, w.impulse)
+        w.record.keep_awaited(w.q_try, w.v, w.impulse)
     if not renew_forces(m, plan, w, t):
         return NOT_FINITE
-    if record.keeps_event(t):
-        keep(w, record, t, 1.0)
+    if w.record.keeps_event(t):
+        keep(w, t, 1.0)
     return FINISHED

@@ -1,4 +1,5 @@
 from lcpstep.kernels.clock cimport Clock
+from lcpstep.kernels.record cimport Record
 
 cdef class Plan:
     cdef readonly object fields
@@ -29,4 +30,5 @@ cdef class Work:
     cdef Sudden sudden
     cdef Doubles end_u, begins
     cdef public double jump, margin
+    cdef public Record record
     cdef public bint doubtful

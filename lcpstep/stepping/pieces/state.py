@@ -159,6 +159,8 @@ class Work:
     blind           how far a single piece goes in which events are not looked for (0: they are)
     goal            the time at the end of the step
 
+    record          what is kept of the motion
+
     Counters:
     steps, lcp_calls, force_evaluations
     events_left     events still allowed
@@ -173,6 +175,7 @@ class Work:
 
     def __init__(self, n_q: int, n_c: int) -> None:
         self.n_q, self.n_c = n_q, n_c
+        self.record: Any = None
         self.numbers = np.zeros(len(VECTORS) * n_q + len(NUMBERS) * n_c)
         self.marks = np.zeros(len(MARKS) * n_c, dtype=np.intp)
         self.matrices = np.zeros(3 * n_c * n_q + n_q * n_q + 2 * n_c * n_c)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.pointers import abs, max, min
 from lcpstep.stepping.pieces.codes import CLOSED, GROUND, OPEN, RELEASE, STICK
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, faint
@@ -70,21 +69,21 @@ def coupled(w: Work, c: int) -> bool:
     return found
 
 
-def stick(w: Work, record: Record, c: int, t: float) -> None:
+def stick(w: Work, c: int, t: float) -> None:
     """A contact stays closed from here on."""
     w.rate[c], w.status[c] = 0.0, CLOSED
     w.closed_now += 1
     w.older[c] = w.force_now[c] = 0.0
-    record.note(t, c, 0.0, 0.0, 0.0, STICK)
+    w.record.note(t, c, 0.0, 0.0, 0.0, STICK)
 
 
-def release(m: Model, plan: Plan, w: Work, record: Record, c: int, t: float, after: float) -> None:
+def release(m: Model, plan: Plan, w: Work, c: int, t: float, after: float) -> None:
     """A closed contact opens."""
     w.status[c], w.grounded[c] = OPEN, GROUND
     w.closed_now -= 1
     w.force_now[c] = w.older[c] = 0.0
     w.gap[c], w.rate[c] = 0.0, after
-    record.note(t, c, 0.0, after, 0.0, RELEASE)
+    w.record.note(t, c, 0.0, after, 0.0, RELEASE)
     count_turn(m, plan, w, c, after, False)
     w.events += 1
 
