@@ -77,7 +77,7 @@ class Attempts(Control):
         self, way: Steps, make: Callable[[float], dict[str, Any]], clock: Clock, span: tuple[float, float],
         h: float, tolerance: float, order: int,
     ) -> None:  # fmt: skip
-        super().__init__(way.record, make, span, h, tolerance, order)
+        super().__init__(way.s.record, make, span, h, tolerance, order)
         m, plan, s, rows = way.m, way.plan, way.s, way.rows
         self.way, self.m, self.plan, self.s, self.rows = way, m, plan, s, rows
         self.times, self.record.n_times = self.record.times, 0

@@ -51,7 +51,8 @@ class MoreauRun(StepRun):
         self.impulse = self.place.arrays["impulse"]
         self.slack = RESTING * (places(self.model, scene.q0, scene.v0, method.h) or 1.0)
         made = self.plan_for(self.stretches[0][0])
-        self.loop = loop.Steps(self.model, made, self.place, self.rows, recorder.record)
+        self.place.record = recorder.record
+        self.loop = loop.Steps(self.model, made, self.place, self.rows)
 
     def begin(self) -> int:
         """The initial state; a code."""

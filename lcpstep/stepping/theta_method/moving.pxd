@@ -1,3 +1,5 @@
+from lcpstep.kernels.record cimport Record
+
 cdef class Rows
 
 cdef class Plan:
@@ -12,6 +14,7 @@ cdef class State:
     cdef readonly Py_ssize_t n_q, n_c, n_moving
     cdef public Py_ssize_t active, steps, problems, forces, iteration
     cdef double moved, opened
+    cdef public Record record
     cdef Doubles q, v, force, g, u, impulse
     cdef Indices closed, sticks
     cdef Doubles next_q, next_v, next_force, v_free, q_between, v_between, R, try_v, try_q, try_f, M, M_start

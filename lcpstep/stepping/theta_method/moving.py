@@ -67,6 +67,7 @@ class State:
     steps, problems, forces, iteration    taken; complementarity problems; evaluations of forces; of Newton
     moved    by how much more than rounding of q the last iteration has moved it
     opened   the gap that steps may have opened above a contact which lasts: 0 of steps of one size
+    record   what is kept of the motion
 
     Parameters
     ----------
@@ -87,6 +88,7 @@ class State:
         self.sticks, self.pivots = indices_after(self.closed, n_c), indices_after(self.closed, 2 * n_c)
         self.active = self.steps = self.problems = self.forces = self.iteration = 0
         self.moved = self.opened = 0.0
+        self.record: Any = None
         self.work = np.zeros((VECTORS + SQUARES * n_q) * n_q)
         self.next_force = doubles(self.work)
         self.next_q = after(self.next_force, n_q)

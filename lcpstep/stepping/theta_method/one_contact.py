@@ -12,7 +12,6 @@ import cython
 from lcpstep.kernels.dynamics import external_force, moves, obstacle, varies
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.one_row import keep_one
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import finite
 from lcpstep.pointers import abs, max
 from lcpstep.stepping.steps import RESOLUTION, RESTING, UNTOLD
@@ -22,9 +21,7 @@ from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 EVENTS = 2  # that a step may note
 
 
-def in_registers(
-    m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, first: int, last: int
-) -> None:
+def in_registers(m: Model, plan: Plan, s: State, c: Rows, t0: float, first: int, last: int) -> None:
     """Steps up to `last`, or to where the log is full; or to the first with a problem to be handed out.
 
     `theta_step` has that solved by what is no kernel, and says so where a step makes a number infinite.
@@ -33,19 +30,19 @@ def in_registers(
     while before < s.steps < last and finite(s.g, 1) and finite(s.u, 1):
         before = s.steps
         if s.closed[0] == 0:
-            coast(m, plan, s, record, t0, first, last)
+            coast(m, plan, s, t0, first, last)
         if not c.external and plan.W[0] > 0.0:
-            press(m, plan, s, c, record, t0, first, last)
+            press(m, plan, s, c, t0, first, last)
 
 
-def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int, last: int) -> None:
+def coast(m: Model, plan: Plan, s: State, t0: float, first: int, last: int) -> None:
     """Free steps, up to the first that has to do with the contact."""
     h, theta, half, slack = plan.h, plan.theta, 0.5 * plan.h, plan.slack
     A_f, A_q, A_v = plan.A_f[0], plan.A_q[0], plan.A_v[0]
     G, offset = m.G[0], m.offset[0]
     q, v, g, u, f, k = s.q[0], s.v[0], s.g[0], s.u[0], s.force[0], s.steps
-    left = record.every - k % record.every if record.every > 0 else 0  # steps to the next state kept
-    last = record.room_until(k, last)
+    left = s.record.every - k % s.record.every if s.record.every > 0 else 0  # steps to the next state kept
+    last = s.record.room_until(k, last)
     driven, moving = varies(m), moves(m)
     while k < last and g + half * u > slack:
         t = t0 + h * (k + 1 - first)
@@ -64,18 +61,18 @@ def coast(m: Model, plan: Plan, s: State, record: Record, t0: float, first: int,
         k += 1
         left -= 1
         if left == 0 and g - g == 0.0 and u - u == 0.0:
-            left = record.every
-            keep_one(record, t, 0.0, q, v, s.impulse)
+            left = s.record.every
+            keep_one(s.record, t, 0.0, q, v, s.impulse)
     s.q[0], s.v[0], s.g[0], s.u[0], s.force[0] = q, v, g, u, f
     s.forces += k - s.steps
     s.steps = k
 
 
-def press(m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, first: int, last: int) -> None:
+def press(m: Model, plan: Plan, s: State, c: Rows, t0: float, first: int, last: int) -> None:
     """Steps that have to do with the contact, up to the first that has not."""
     h, theta, driven, moving = plan.h, plan.theta, varies(m), moves(m)
-    while s.steps < last and not record.full(EVENTS):
-        q, v, f, k, events = s.q[0], s.v[0], s.force[0], s.steps, record.event
+    while s.steps < last and not s.record.full(EVENTS):
+        q, v, f, k, events = s.q[0], s.v[0], s.force[0], s.steps, s.record.event
         if s.closed[0] == 0 and not s.g[0] + 0.5 * h * s.u[0] <= plan.slack:
             break
         t = t0 + h * (k + 1 - first)
@@ -87,7 +84,7 @@ def press(m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, fi
             break
         if moving:
             obstacle(m, t, s.q, s.v)
-        v_next = met(m, plan, s, c, record, t, k, q, s.g[0], s.u[0], v_next)
+        v_next = met(m, plan, s, c, t, k, q, s.g[0], s.u[0], v_next)
         s.q[0] = q + h * (theta * v_next + (1.0 - theta) * v)
         s.v[0], s.force[0] = v_next, f_next
         s.g[0] = m.offset[0] - m.motion_now[0] + m.G[0] * s.q[0]
@@ -95,12 +92,12 @@ def press(m: Model, plan: Plan, s: State, c: Rows, record: Record, t0: float, fi
         s.steps, s.forces = k + 1, s.forces + 1
         if not (finite(s.g, 1) and finite(s.u, 1)):
             break
-        if record.is_due(s.steps) or (record.on_events and record.event > events):
-            keep_one(record, t, 0.0, s.q[0], s.v[0], s.impulse)
+        if s.record.is_due(s.steps) or (s.record.on_events and s.record.event > events):
+            keep_one(s.record, t, 0.0, s.q[0], s.v[0], s.impulse)
 
 
 def met(
-    m: Model, plan: Plan, s: State, c: Rows, record: Record, t: float, k: int, q: float, g: float, u: float,
+    m: Model, plan: Plan, s: State, c: Rows, t: float, k: int, q: float, g: float, u: float,
     v: float,
 ) -> float:  # fmt: skip
     """Velocity after step k, which ends at t and begins with q, g and u; v: the one without contact."""
@@ -116,7 +113,7 @@ def met(
         s.problems += 1
     kind = kind_of(p, closed)
     if kind != NO_EVENT:
-        record.note(t, 0, u, G * v + g_t, p, kind)
+        s.record.note(t, 0, u, G * v + g_t, p, kind)
     s.closed[0], c.p[0] = closed_since(p, closed), p
     s.impulse[0] += p
     return v

@@ -3,5 +3,4 @@ cdef class Steps(Stepwise):
     cdef readonly Model m
     cdef readonly State s
     cdef readonly Rows rows
-    cdef readonly Record record
     cdef bint single

@@ -7,7 +7,6 @@ import cython
 from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, total_force
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import copy, finite, product
 from lcpstep.pointers import min
 from lcpstep.stepping.steps import LATE
@@ -22,12 +21,12 @@ class Steps(Stepwise):
 
     Parameters
     ----------
-    m : Model;  plan : Plan;  s : State;  rows : Rows;  record : Record
+    m : Model;  plan : Plan;  s : State, which has the record of the run;  rows : Rows
     """
 
-    def __init__(self, m: Model, plan: Plan, s: State, rows: Rows, record: Record) -> None:
+    def __init__(self, m: Model, plan: Plan, s: State, rows: Rows) -> None:
         super().__init__()
-        self.m, self.plan, self.s, self.rows, self.record = m, plan, s, rows, record
+        self.m, self.plan, self.s, self.rows = m, plan, s, rows
         self.rows.blows.begin(self.s, self.rows)
         single = m.linear and m.flat and s.n_c == 1 and s.n_q == 1
         self.single = single and rows.n == 1 and not rows.projected
@@ -36,10 +35,10 @@ class Steps(Stepwise):
     def begin(self, t: float, side: float) -> None:
         """Forces and gaps of the initial state, which is kept where states are; side: see `steps.start_side`."""
         look(self.m, self.s, self.rows, side)
-        if self.record.n_times == 0:
-            self.record.keep(t, 0.0, self.s.q, self.s.v, self.s.impulse)
-        elif self.record.times[0] == t:
-            self.record.keep_awaited(self.s.q, self.s.v, self.s.impulse)
+        if self.s.record.n_times == 0:
+            self.s.record.keep(t, 0.0, self.s.q, self.s.v, self.s.impulse)
+        elif self.s.record.times[0] == t:
+            self.s.record.keep_awaited(self.s.q, self.s.v, self.s.impulse)
 
     @cython.ccall
     def run(self, t0: float, first: int, last: int, solved: bool) -> int:
@@ -54,23 +53,23 @@ class Steps(Stepwise):
 
     def move(self) -> int:
         """A step, after those that are taken in registers; says why no more can be taken."""
-        if self.record.full(2 * self.s.n_c):
+        if self.s.record.full(2 * self.s.n_c):
             return BUFFER_FULL
         if self.single and not self.rows.solved:
-            end = self.record.untimed_until(self.plan.h, self.t0, self.first, self.last)
-            in_registers(self.m, self.plan, self.s, self.rows, self.record, self.t0, self.first, end)
+            end = self.s.record.untimed_until(self.plan.h, self.t0, self.first, self.last)
+            in_registers(self.m, self.plan, self.s, self.rows, self.t0, self.first, end)
             if not (finite(self.s.g, 1) and finite(self.s.u, 1)):
                 return NOT_FINITE
             if self.s.steps >= self.last:
                 return FINISHED
-            if self.record.full(2):
+            if self.s.record.full(2):
                 return BUFFER_FULL
-        k, events = self.s.steps - self.first, self.record.event
+        k, events = self.s.steps - self.first, self.s.record.event
         t, t_next = self.t0 + self.plan.h * k, self.t0 + self.plan.h * (k + 1)
-        code = take_step(self.m, self.plan, self.s, self.rows, self.record, t, t_next)
+        code = take_step(self.m, self.plan, self.s, self.rows, t, t_next)
         if code != FINISHED:
             return code
-        return end_step(self.m, self.plan, self.s, self.rows, self.record, t, t_next, events)
+        return end_step(self.m, self.plan, self.s, self.rows, t, t_next, events)
 
 
 def look(m: Model, s: State, c: Rows, t: float) -> None:
@@ -83,12 +82,10 @@ def look(m: Model, s: State, c: Rows, t: float) -> None:
     measure(m, s, c, t)
 
 
-def end_step(
-    m: Model, plan: Plan, s: State, c: Rows, record: Record, t: float, t_next: float, events: int
-) -> int:
+def end_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float, events: int) -> int:
     """The step is taken over, and kept where that is asked for; it began after so many events. Does the run go on?"""
-    if record.next_time < record.n_times:
-        keep_times(plan.h, s, record, t, t_next)
+    if s.record.next_time < s.record.n_times:
+        keep_times(plan.h, s, t, t_next)
     copy(s.q, s.next_q, s.n_q)
     copy(s.v, s.next_v, s.n_q)
     copy(s.force, s.next_force, s.n_q)
@@ -96,8 +93,8 @@ def end_step(
     s.steps += 1
     if not (finite(s.g, s.n_c) and finite(s.u, s.n_c)):
         return NOT_FINITE
-    if (record.every > 0 and record.is_due(s.steps)) or (record.on_events and record.event > events):
-        record.keep(t_next, 0.0, s.q, s.v, s.impulse)
+    if (s.record.every > 0 and s.record.is_due(s.steps)) or (s.record.on_events and s.record.event > events):
+        s.record.keep(t_next, 0.0, s.q, s.v, s.impulse)
     return FINISHED
 
 
@@ -116,11 +113,11 @@ def measure(m: Model, s: State, c: Rows, t: float) -> None:
         s.u[i] = product(c.H, s.v, i, s.n_q) + c.H_t[i]
 
 
-def keep_times(h: float, s: State, record: Record, t: float, t_next: float) -> None:
+def keep_times(h: float, s: State, t: float, t_next: float) -> None:
     """Keep the states asked for within the step, q and v interpolated linearly."""
-    while record.awaited() <= t_next + LATE * h:
-        share = min(1.0, (record.awaited() - t) / (t_next - t))
+    while s.record.awaited() <= t_next + LATE * h:
+        share = min(1.0, (s.record.awaited() - t) / (t_next - t))
         for i in range(s.n_q):
             s.q_between[i] = (1.0 - share) * s.q[i] + share * s.next_q[i]
             s.v_between[i] = (1.0 - share) * s.v[i] + share * s.next_v[i]
-        record.keep_awaited(s.q_between, s.v_between, s.impulse)
+        s.record.keep_awaited(s.q_between, s.v_between, s.impulse)

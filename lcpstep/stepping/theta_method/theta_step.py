@@ -29,7 +29,6 @@ import cython
 from lcpstep.kernels.dynamics import external_force, gap_rates, gaps
 from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.record import Record
 from lcpstep.kernels.vectors import add, clear, copy, finite, product
 from lcpstep.pointers import abs, after, whole
 from lcpstep.stepping.constraints.joint_rows import joints_hold
@@ -58,7 +57,7 @@ from lcpstep.stepping.theta_method.row_impulses import (
 )
 
 
-def take_step(m: Model, plan: Plan, s: State, c: Rows, record: Record, t: float, t_next: float) -> int:
+def take_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> int:
     """One step into next_q, next_v and the impulses; its events are noted. Says how it went."""
     if not c.solved:
         predict_active(m, plan, s, c, t)
@@ -67,7 +66,7 @@ def take_step(m: Model, plan: Plan, s: State, c: Rows, record: Record, t: float,
         code = step(m, plan, s, c, t, t_next)
     if code != FINISHED:
         return code
-    log_events(m, s, c, record, t_next)
+    log_events(m, s, c, t_next)
     add(s.impulse, 1.0, c.p, c.n)
     return project(m, plan, s, c, t_next) if c.projected else FINISHED
 
@@ -217,21 +216,21 @@ def free_velocity(m: Model, plan: Plan, s: State, t_next: float) -> None:
         s.v_free[i] = total
 
 
-def log_events(m: Model, s: State, c: Rows, record: Record, t_next: float) -> None:
+def log_events(m: Model, s: State, c: Rows, t_next: float) -> None:
     """Note impacts, the beginning of lasting contact, and its end."""
-    first, released = record.event, False
+    first, released = s.record.event, False
     for i in range(c.n_c):
         kind = kind_of(c.p[i], s.closed[i])
         s.closed[i] = closed_since(c.p[i], s.closed[i])
         released = released or kind == RELEASE
         if kind != NO_EVENT:
             u = 0.0 if kind == RELEASE else product(c.H, s.next_v, i, s.n_q) + c.H_t[i]
-            record.note(t_next, i, s.u[i], u, c.p[i], kind)
+            s.record.note(t_next, i, s.u[i], u, c.p[i], kind)
     if not released:
         return
     # Those of the law are of contacts that took part in it
     gap_rates(m, t_next, s.next_q, s.next_v, c.H, c.H_t)
-    for k in range(first, record.event):
-        line = after(record.events, k * COLUMNS)
+    for k in range(first, s.record.event):
+        line = after(s.record.events, k * COLUMNS)
         if line[5] == RELEASE:
             line[3] = product(c.H, s.next_v, whole(line[1]), s.n_q) + c.H_t[whole(line[1])]
