@@ -25,11 +25,12 @@ MOMENT, SHORTEST, SHORTER = 1e-4, 1e-9, 0.1  # of the next step; and how much sh
 DOUBTFUL = 10.0  # of what an acceleration changes by in a moment: larger ones are no rounding
 
 
-def opens_any(s: Rubbing) -> bool:
-    """Whether a closed contact opens, by `decide`."""
+def opens_any(s: Rubbing, pressed: bool) -> bool:
+    """Whether a closed contact opens, by `decide`; or one that a force has `pressed` in the modes at hand."""
     some = False
     for c in range(s.n_c):
-        some = some or (s.mode[c] != OPEN and s.new_mode[c] == OPEN)
+        opens = s.mode[c] != OPEN and s.new_mode[c] == OPEN
+        some = some or (opens and (not pressed or s.loaded[c] == 1))
     return some
 
 

@@ -186,7 +186,7 @@ def seek_modes(s: Rubbing, t: float) -> int:
     code = decide(s)
     if s.rows.n_kept < s.n_j and contradict(s):
         return JOINTS_FAILED
-    if code == DONE and opens_any(s):
+    if code == DONE and opens_any(s, False):
         code = reconsider(s, t, longest)
     if code == DONE and undecided(s):
         copy_indices(s.tried, s.new_mode, s.n_c)
@@ -216,7 +216,7 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
         if code != DONE:
             return code
         open_question = undecided(s)
-        if lets_go(s):
+        if opens_any(s, True):
             keep_modes(s)
             break
         if not open_question:
@@ -227,14 +227,6 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
     if code != DONE:
         return code
     return DONE if measure(s, t, s.y) else NOT_FINITE
-
-
-def lets_go(s: Rubbing) -> bool:
-    """Whether a contact that a force presses, in the modes at hand, has none in those decided."""
-    some = False
-    for c in range(s.n_c):
-        some = some or (s.loaded[c] == 1 and s.mode[c] != OPEN and s.new_mode[c] == OPEN)
-    return some
 
 
 def keep_modes(s: Rubbing) -> None:

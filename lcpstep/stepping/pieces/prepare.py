@@ -118,11 +118,11 @@ def start(scene: Scene, m: Model, p: Plan) -> Work:
     w.start(scene.q0, scene.v0)
     if m.carried:
         c, c_t = displaced(m, scene.t_span[0])
-        w.view("q")[:] += c
-        w.view("v")[:] += c_t
+        w.seen["q"][:] += c
+        w.seen["v"][:] += c_t
     if p.plain and m.n_q * m.n_c > 1:  # of one coordinate and contact they are the whole, as they stand
         for name, marks in ranges(m.arrays).items():
-            w.view(name)[:] = marks
+            w.seen[name][:] = marks
     return w
 
 

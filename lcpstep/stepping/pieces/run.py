@@ -46,7 +46,7 @@ class LocatedRun(StepRun):
         expected = None if steps is None else steps + steps // 16 + SPARE  # and events
         recorder = Recorder(scene.n_q, scene.n_c, kept, expected=expected)
         super().__init__(method, scene, kept, recorder, PORTION)
-        self.impulse = self.work.view("impulse")
+        self.impulse = self.work.seen["impulse"]
         kind = QuadraticSteps if method.order == 2 else PolynomialSteps
         self.work.record = recorder.record
         self.loop = kind(self.model, p, self.work)
@@ -103,7 +103,7 @@ class LocatedRun(StepRun):
         """Last known q and v."""
         if self.finite is not None:
             return self.finite[1:]
-        q, v = self.work.view("q"), self.work.view("v")
+        q, v = self.work.seen["q"], self.work.seen["v"]
         if not self.model.carried:
             return q.copy(), v.copy()
         c, c_t = displaced(self.model, self.reached)
@@ -181,7 +181,7 @@ class LocatedRun(StepRun):
         """Why the run ended early, in words."""
         if code == Status.LCP_FAILED:
             n = self.work.members
-            contacts = sorted(self.work.view("chosen")[:n].tolist())
+            contacts = sorted(self.work.seen["chosen"][:n].tolist())
             words = f"no impulses or forces satisfy contact{'s' * (n > 1)} {contacts} together"
             return f"{no_way_out(self.scene, self.now, self.state[0], contacts) or words} {self.where}"
         return super().why(code)

@@ -13,7 +13,7 @@ cdef class Plan:
     cdef Indices pivots
 
 cdef class Work:
-    cdef readonly object numbers, marks, matrices, places
+    cdef readonly object numbers, marks, matrices, places, seen
     cdef readonly Py_ssize_t n_q, n_c
     cdef Workspace lcp
     cdef Bracket bracket

@@ -13,20 +13,9 @@ from lcpstep.kernels.sudden import Sudden
 from lcpstep.lcp.workspace import Workspace
 from lcpstep.pointers import Doubles, Indices, after, indices_after, inf
 
-VECTORS = [
-    "q", "v", "free", "a", "force", "next_force", "q_base", "q_try", "v_try", "a_try", "jolt", "q_from",
-    "v_from", "a_from", "q_time", "swing", "v_struck",
-]  # fmt: skip
-NUMBERS = [
-    "gap", "rate", "half", "alpha", "bend", "bias", "gap_try", "gap_t", "gap_t_try", "end_s", "last",
-    "force_now", "older", "older_time", "p", "b", "z", "residual", "change", "doubt", "before", "impulse_from",
-    "since", "next_zero", "turned", "turns", "hops", "fall", "pushed", "end_u",
-    "impulse", "begins",
-]  # fmt: skip
-MARKS = [
-    "status", "grounded", "hits", "close_hits", "plastic", "chosen", "held", "place", "first_coordinate",
-    "last_coordinate", "first_contact", "last_contact",
-]  # fmt: skip
+VECTORS, NUMBERS, MARKS = 17, 32, 12  # of n_q numbers each; of n_c; of n_c whole numbers
+# Marks that Python reads and writes, after the first
+SEEN = ("chosen", "first_coordinate", "last_coordinate", "first_contact", "last_contact")
 
 
 class Plan:
@@ -160,6 +149,7 @@ class Work:
     goal            the time at the end of the step
 
     record          what is kept of the motion
+    seen            arrays of some of these, by name, that Python reads and writes
 
     Counters:
     steps, lcp_calls, force_evaluations
@@ -176,14 +166,17 @@ class Work:
     def __init__(self, n_q: int, n_c: int) -> None:
         self.n_q, self.n_c = n_q, n_c
         self.record: Any = None
-        self.numbers = np.zeros(len(VECTORS) * n_q + len(NUMBERS) * n_c)
-        self.marks = np.zeros(len(MARKS) * n_c, dtype=np.intp)
+        self.numbers = np.zeros(VECTORS * n_q + NUMBERS * n_c)
+        self.marks = np.zeros(MARKS * n_c, dtype=np.intp)
+        self.seen: dict[str, Any] = {name: self.marks[(k + 1) * n_c :][:n_c] for k, name in enumerate(SEEN)}
+        self.seen |= {"q": self.numbers[:n_q], "v": self.numbers[n_q : 2 * n_q]}
+        self.seen["impulse"] = self.numbers[VECTORS * n_q :][:n_c]
         self.matrices = np.zeros(3 * n_c * n_q + n_q * n_q + 2 * n_c * n_c)
         self.places = np.zeros(n_c + 1, dtype=np.intp)
         self.lcp, self.pivots, self.bracket = Workspace(n_c), indices(self.places), Bracket()
         self.sudden, self.jump, self.margin, self.doubtful = Sudden(), -inf, 0.0, False
         self.place_vectors(doubles(self.numbers))
-        self.place_numbers(after(doubles(self.numbers), len(VECTORS) * n_q))
+        self.place_numbers(after(doubles(self.numbers), VECTORS * n_q))
         self.place_marks(indices(self.marks))
         self.place_matrices(doubles(self.matrices))
         self.sigma = self.end = self.low = self.high = self.stalled = self.settled = 0.0
@@ -201,17 +194,8 @@ class Work:
         for i in range(self.n_q):
             self.q[i], self.v[i] = place[i], speed[i]
 
-    def view(self, name: str) -> Any:
-        """The vector, the numbers or the marks of this name, as an array that Python reads and writes."""
-        if name in MARKS:
-            return self.marks[MARKS.index(name) * self.n_c :][: self.n_c]
-        if name in VECTORS:
-            return self.numbers[VECTORS.index(name) * self.n_q :][: self.n_q]
-        n = len(VECTORS) * self.n_q
-        return self.numbers[n + NUMBERS.index(name) * self.n_c :][: self.n_c]
-
     def place_vectors(self, x: Doubles) -> None:
-        """Numbers per coordinate, from x on, in the order of VECTORS."""
+        """Numbers per coordinate, from x on; the position comes first, then the velocity."""
         n = self.n_q
         self.q, self.v = x, after(x, n)
         self.free, self.a = after(x, 2 * n), after(x, 3 * n)
@@ -224,9 +208,9 @@ class Work:
         self.v_struck = after(x, 16 * n)
 
     def place_numbers(self, x: Doubles) -> None:
-        """Numbers per contact, from x on, in the order of NUMBERS."""
+        """Numbers per contact, from x on; impulses come first."""
         n = self.n_c
-        self.gap, self.rate = x, after(x, n)
+        self.impulse, self.rate = x, after(x, n)
         self.half, self.alpha = after(x, 2 * n), after(x, 3 * n)
         self.bend, self.bias = after(x, 4 * n), after(x, 5 * n)
         self.gap_try, self.gap_t = after(x, 6 * n), after(x, 7 * n)
@@ -241,17 +225,17 @@ class Work:
         self.turned, self.turns = after(x, 24 * n), after(x, 25 * n)
         self.hops, self.fall = after(x, 26 * n), after(x, 27 * n)
         self.pushed, self.end_u = after(x, 28 * n), after(x, 29 * n)
-        self.impulse, self.begins = after(x, 30 * n), after(x, 31 * n)
+        self.gap, self.begins = after(x, 30 * n), after(x, 31 * n)
 
     def place_marks(self, x: Indices) -> None:
-        """Whole numbers per contact, in the order of MARKS."""
+        """Whole numbers per contact, from x on: `status`, those of SEEN, and others."""
         n = self.n_c
-        self.status, self.grounded = x, indices_after(x, n)
-        self.hits, self.close_hits = indices_after(x, 2 * n), indices_after(x, 3 * n)
-        self.plastic, self.chosen = indices_after(x, 4 * n), indices_after(x, 5 * n)
-        self.held, self.place = indices_after(x, 6 * n), indices_after(x, 7 * n)
-        self.first_coordinate, self.last_coordinate = indices_after(x, 8 * n), indices_after(x, 9 * n)
-        self.first_contact, self.last_contact = indices_after(x, 10 * n), indices_after(x, 11 * n)
+        self.status, self.chosen = x, indices_after(x, n)
+        self.first_coordinate, self.last_coordinate = indices_after(x, 2 * n), indices_after(x, 3 * n)
+        self.first_contact, self.last_contact = indices_after(x, 4 * n), indices_after(x, 5 * n)
+        self.hits, self.close_hits = indices_after(x, 6 * n), indices_after(x, 7 * n)
+        self.plastic, self.grounded = indices_after(x, 8 * n), indices_after(x, 9 * n)
+        self.held, self.place = indices_after(x, 10 * n), indices_after(x, 11 * n)
 
     def place_matrices(self, x: Doubles) -> None:
         """Matrices, from x on."""
