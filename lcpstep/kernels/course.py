@@ -60,6 +60,12 @@ class Stepwise(Course):
     def __init__(self) -> None:
         self.t0, self.first, self.last = 0.0, 0, 0
 
+    @cython.ccall
+    def run(self, t0: float, first: int, last: int) -> int:
+        """`take`, called from Python."""
+        with cython.nogil:
+            return self.take(t0, first, last)
+
     def take(self, t0: float, first: int, last: int) -> int:
         """Steps up to last - 1, step `first` beginning at t0; says why it returned."""
         self.t0, self.first, self.last = t0, first, last

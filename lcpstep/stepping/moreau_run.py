@@ -69,11 +69,11 @@ class MoreauRun(StepRun):
 
     def take(self, last: int) -> int:
         """Steps up to the one before `last`; why the kernel returned."""
-        solved, code = False, NEED_LCP
+        code = NEED_LCP
         while code == NEED_LCP:
-            code = self.loop.run(self.t0, self.first, last, solved)
-            solved = code == NEED_LCP and self.solve_outside()
-            if code == NEED_LCP and not solved:
+            code = self.loop.run(self.t0, self.first, last)
+            self.rows.solved = code == NEED_LCP and self.solve_outside()
+            if code == NEED_LCP and not self.rows.solved:
                 return Status.LCP_FAILED
         return int(code)
 

@@ -150,11 +150,6 @@ class Rubbing(RungeKutta):
         self.arms = np.zeros(GUARDS * n_c, dtype=np.intp)
         self.armed = indices(self.arms)
 
-    def watch_modes(self, watch: Any) -> None:
-        """Look at the guards of a system with modes along the motion."""
-        watch.share(self)
-        self.watch, self.watched = watch, True
-
     def proceed(self) -> int:
         """Go on up to the first event, no further than a step; a status. Every way to step has its own."""
         return NOT_FINITE

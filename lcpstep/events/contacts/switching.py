@@ -44,8 +44,8 @@ class Watched(Motion):
 
     @cython.ccall
     def share(self, s: Rubbing) -> None:
-        """Work on the numbers of that motion: states and stages are those of s."""
-        self.rubbing, self.state = s, s.state
+        """Look at the guards of modes along that motion, on its numbers: states and stages are those of s."""
+        self.rubbing, self.state, s.watch, s.watched = s, s.state, self, True
         self.y, self.y_new, self.y_stage, self.first, self.K, self.F = (
             s.y, s.y_new, s.y_stage, s.first, s.K, s.F,
         )  # fmt: skip

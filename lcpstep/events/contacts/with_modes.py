@@ -41,7 +41,7 @@ class RunWithModes(ContactRun):
         watched = Watched(
             self.machine, modes.t_span[1], method.rtol, method.atol, long, method.max_events, 0, SWITCHES, scene.n_q
         )  # fmt: skip
-        s.watch_modes(watched)
+        watched.share(s)
         s.watch.mode = s.model.mode = modes.system.names.index(modes.mode)
         s.watch.now = modes.t_span[0]
         return s

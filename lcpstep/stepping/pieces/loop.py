@@ -77,12 +77,6 @@ class Steps(Stepwise):
             put_kept_back(self.m, self.w.record, self.own, end)
             self.own = end
 
-    @cython.ccall
-    def run(self, t0: float, first: int, last: int) -> int:
-        """`take`, called from Python."""
-        with cython.nogil:
-            return self.take(t0, first, last)
-
     def stage(self, goal: int) -> int:
         """Whether there are steps to be taken."""
         return AHEAD if self.w.steps < goal else ARRIVED

@@ -7,20 +7,19 @@ import cython
 from lcpstep.events.codes import OPEN
 from lcpstep.events.contacts.equations import measure, measure_gaps
 from lcpstep.events.contacts.loose import first_stray
-from lcpstep.events.contacts.modes import decide, undecided
+from lcpstep.events.contacts.modes import decide, gives, undecided
 from lcpstep.events.contacts.moments import of_sliding
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.contacts.step import arrive, find_standing, mark_resting, of_force
 from lcpstep.events.contacts.surfaces import FREE
 from lcpstep.events.rows.contacts import add_impulse, hold_modes, list_by_row, still
 from lcpstep.events.rows.equations import respond_to
-from lcpstep.events.rows.held import constrain
 from lcpstep.events.rows.jumps import breaks
 from lcpstep.events.rows.keep import keep, keep_event
 from lcpstep.events.rows.projection import project
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, PROJECTION_FAILED
-from lcpstep.kernels.vectors import add, clear, copy, product
+from lcpstep.kernels.vectors import add, copy, product
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.rubbing.found import (
     NOWHERE,
@@ -234,10 +233,7 @@ def leaves_obstacles(s: Strides, t: float) -> bool:
         i = s.n_j + c
         if s.mode[c] == OPEN and s.gap[i] < -s.band[GUARDS * c]:
             respond_to(s.rows, i)
-            copy(s.dv, after(s.MR, i * s.n_q), s.n_q)
-            clear(s.shifted_rate, s.n_r)
-            constrain(s.rows, s.dv, s.shifted_rate)
-            way = product(s.R, s.dv, i, s.n_q)
+            way = gives(s, i)
             if way > FREE * product(s.R, after(s.MR, i * s.n_q), i, s.n_q):
                 add(s.seen, -s.gap[i] / way, s.dv, s.n_q)
                 some = True

@@ -38,7 +38,7 @@ cdef class Rows:
     cdef readonly Py_ssize_t n_c, n_t, n_j, n
     cdef Py_ssize_t n_f
     cdef readonly bint projected, turning, in_turn, external
-    cdef bint solved
+    cdef public bint solved
     cdef Elimination elimination
     cdef readonly Blows blows
     cdef Doubles H, T, J, J_start, D, H_t, T_t, J_t, p, sliding, at_rest, tangent_restitution, rebound

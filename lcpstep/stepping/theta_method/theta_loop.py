@@ -40,13 +40,6 @@ class Steps(Stepwise):
         elif self.s.record.times[0] == t:
             self.s.record.keep_awaited(self.s.q, self.s.v, self.s.impulse)
 
-    @cython.ccall
-    def run(self, t0: float, first: int, last: int, solved: bool) -> int:
-        """`take`, called from Python; `solved`: the problem at hand is."""
-        self.rows.solved = solved
-        with cython.nogil:
-            return self.take(t0, first, last)
-
     def stage(self, goal: int) -> int:
         """Whether there are steps to be taken."""
         return AHEAD if self.s.steps < goal else ARRIVED
