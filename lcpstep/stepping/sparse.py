@@ -144,7 +144,7 @@ class SparseRun(StepRun):
     ) -> tuple[Array, Status]:
         """Velocity at the end of the step, the impulses found and added up; and how that went."""
         e, v, u, p = self.equations, self.v, self.u, np.zeros(len(s_t))
-        push, free = r, step.without_contact(r)
+        push, free = r, step.saddle.free(r)
         blows = Blows(active, self.slow(step, free, active, s_t))
         while blows.follows(u):
             point = self.contact(step, push, free, blows, v, s_t, blows.rebound(u, e.restitution))

@@ -77,7 +77,7 @@ class CoupledRun(SparseRun):
         """Velocity at the end of the step, the impulses found and added up; and how that went."""
         J_start, _ = self.joints.at(t, self.q, self.v)
         closed, active = active, self.bearing(step, active, J_start)
-        free = step.without_contact(r)
+        free = step.saddle.free(r)  # change of the velocity without contact
         v_free = self.v + free
         rough, sliding = active & self.stiction.rough, self.T @ self.v + self.stiction.slip(t)
         if rough.any() and not self.stiction.measure(t, self.q, sliding):

@@ -157,10 +157,6 @@ class Step:
         average = self.theta * F_next + (1.0 - self.theta) * F
         return self.h * (average - e.K_rows.times(q)) - self.B.times(v)
 
-    def without_contact(self, r: Array) -> Array:
-        """Change of the velocity, A^-1 r."""
-        return np.asarray(self.saddle.free(r))
-
     @functools.cached_property
     def steepest(self) -> Array:
         """The largest entry of each row of G."""
