@@ -89,16 +89,7 @@ class Attempts(Control):
         self.A_q, self.A_v = doubles(self.matrices["A_q"]), doubles(self.matrices["A_v"])
         self.A_f, self.X = doubles(self.matrices["A_f"]), doubles(self.matrices["X"])
         self.W = doubles(self.matrices["W"])
-        self.place_saved()
-        self.clock, self.ends = clock, span[1]
-        self.at_corner, self.even, self.blow = False, True, False
-        self.look_ahead(span[0])
-        self.size_q, self.size_v = largest(self.s.q, 0.0, s.n_q), largest(self.s.v, 0.0, s.n_q)
-
-    @cython.cfunc
-    def place_saved(self) -> None:
-        """Where the state at the start of steps and parts is kept."""
-        n_q, n_c, n = self.s.n_q, self.s.n_c, self.s.n_moving
+        n_q, n_c, n = s.n_q, s.n_c, s.n_moving
         self.kept, self.steps_before = (np.zeros(2 * n + 4 * n_q), np.zeros(2 * n_c, dtype=np.intp)), 0
         self.begin, self.closed = doubles(self.kept[0]), indices(self.kept[1])
         self.part_q, self.one_q = after(self.begin, n), after(self.begin, 2 * n)
@@ -106,6 +97,10 @@ class Attempts(Control):
         self.part_u, self.one_v = after(self.part_g, n_c), after(self.one_q, n_q)
         self.between_q, self.between_v = after(self.one_q, 2 * n_q), after(self.one_q, 3 * n_q)
         self.begin_v = after(self.begin, n_q)
+        self.clock, self.ends = clock, span[1]
+        self.at_corner, self.even, self.blow = False, True, False
+        self.look_ahead(span[0])
+        self.size_q, self.size_v = largest(self.s.q, 0.0, s.n_q), largest(self.s.v, 0.0, s.n_q)
 
     def attempt(self) -> int:
         """One step, then two halves of it. The halves are left out where they cannot help."""

@@ -217,7 +217,8 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
             return code
         open_question = undecided(s)
         if opens_any(s, True):
-            keep_modes(s)
+            for c in range(s.n_c):  # the modes at hand in the place of those decided
+                s.new_mode[c], s.new_direction[c], s.new_loaded[c] = s.mode[c], s.direction[c], s.loaded[c]
             break
         if not open_question:
             break
@@ -227,12 +228,6 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
     if code != DONE:
         return code
     return DONE if measure(s, t, s.y) else NOT_FINITE
-
-
-def keep_modes(s: Rubbing) -> None:
-    """The modes at hand in the place of those decided."""
-    for c in range(s.n_c):
-        s.new_mode[c], s.new_direction[c], s.new_loaded[c] = s.mode[c], s.direction[c], s.loaded[c]
 
 
 def tell_left(s: Rubbing, t: float) -> None:

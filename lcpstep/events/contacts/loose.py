@@ -29,17 +29,12 @@ def find_loose(s: Rubbing) -> None:
     """How many contacts have a row at rest that is not held and may leave it, as modes begin."""
     s.loose = 0
     for c in range(s.n_c if s.rows.moving or not s.rows.fixed else 0):
-        if s.mode[c] != OPEN and is_loose(s, c):
+        i, sticks = s.n_j + c, s.mode[c] != SLIDES and rubs(s.rows, c)
+        loose = not is_held(s.rows, i) or (sticks and not is_held(s.rows, i + s.n_c))
+        if s.mode[c] != OPEN and loose:
             s.loose += 1
         else:
             s.stray[c] = 0.0
-
-
-def is_loose(s: Rubbing, c: int) -> bool:
-    """Whether closed contact c has a row at rest that is not held."""
-    i = s.n_j + c
-    sticks = s.mode[c] != SLIDES and rubs(s.rows, c)
-    return not is_held(s.rows, i) or (sticks and not is_held(s.rows, i + s.n_c))
 
 
 def forget_strays(s: Rubbing) -> None:

@@ -88,15 +88,11 @@ class Machine:
         field(self, mode, t, doubles(x), doubles(out))
         return out
 
-    def approaches_at(self, mode: int, t: float, x: Any) -> tuple[float, float]:
-        """L1 and L2 of a sliding mode."""
+    def surface_at(self, mode: int, t: float, x: Any) -> tuple[float, float, float]:
+        """H, L1 and L2 of a sliding mode."""
         x = np.array(x, dtype=float)
-        return approaches(self, mode, t, doubles(x))
-
-    def surface_at(self, mode: int, t: float, x: Any) -> float:
-        """H of a sliding mode."""
-        x = np.array(x, dtype=float)
-        return scalar(self, self.surfaces, mode, t, doubles(x))
+        L1, L2 = approaches(self, mode, t, doubles(x))
+        return scalar(self, self.surfaces, mode, t, doubles(x)), L1, L2
 
     def guard_slope_at(self, mode: int, k: int, t: float, x: Any) -> tuple[Any, float]:
         """Derivatives of guard k of a mode by the state (n,) and by time."""

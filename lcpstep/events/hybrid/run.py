@@ -169,8 +169,7 @@ def _check_start(scene: HybridScene, m: Machine) -> None:
         if scene.mode != surface.sliding:
             continue
         t, x, k = scene.t_span[0], np.array(scene.x0), scene.system.names.index(scene.mode)
-        L1, L2 = m.approaches_at(k, t, x)
-        H = m.surface_at(k, t, x)
+        H, L1, L2 = m.surface_at(k, t, x)
         if abs(H) > 1e-9 * max(1.0, float(np.max(np.abs(x)))):
             raise LcpStepError(f"x0: mode {scene.mode!r} starts on its surface, but H = {H:.6g} there")
         if not (L1 >= 0.0 >= L2):

@@ -62,8 +62,17 @@ class QuadraticSteps(Steps):
         return FINISHED
 
     def measure_at(self, at: float, tau: float) -> None:
-        """State, Jacobian and rates of gaps at tau after the base, along the quadratics."""
-        measure_at(self.m, self.w, at, tau)
+        """State, Jacobian and rates of gaps at tau after the base, along the quadratics.
+
+        Of flat contacts what obstacles alone make, beside accelerations that are linear over the piece.
+        """
+        look_along(self.w, tau)
+        gap_rates(self.m, at, self.w.q_try, self.w.v_try, self.w.G_try, self.w.gap_t_try)
+        for c in range(self.w.n_c if self.m.flat and moves(self.m) else 0):
+            begins = -2.0 * self.w.bias[c] - self.w.end_s[c]
+            mean = begins + 0.5 * tau / (self.w.end - self.w.sigma) * (self.w.end_s[c] - begins)
+            own = mean - product(self.m.G, self.w.a, c, self.w.n_q)
+            self.w.gap_t_try[c] = self.w.gap_t_try[c] + tau * own
 
     def follow(self, t: float) -> int:
         """Go on along the quadratics."""
@@ -72,16 +81,6 @@ class QuadraticSteps(Steps):
     def strike(self, t: float, c: int) -> int:
         """The impact of contact c, or that of a corner."""
         return event(self.m, self.plan, self.w, t, c)
-
-
-def measure_at(m: Model, w: Work, at: float, tau: float) -> None:
-    """The same; of flat contacts what obstacles alone make, beside accelerations that are linear over the piece."""
-    look_along(w, tau)
-    gap_rates(m, at, w.q_try, w.v_try, w.G_try, w.gap_t_try)
-    for c in range(w.n_c if m.flat and moves(m) else 0):
-        begins = -2.0 * w.bias[c] - w.end_s[c]
-        mean = begins + 0.5 * tau / (w.end - w.sigma) * (w.end_s[c] - begins)
-        w.gap_t_try[c] += tau * (mean - product(m.G, w.a, c, w.n_q))
 
 
 def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, float]:
