@@ -50,8 +50,8 @@ class Blow:
         told, change = self.law(self.t, self.x), np.max(np.abs(self.v_after - self.x[self.n :]))
         if np.max(np.abs(told - self.v_after)) > LIKE * change + self.noise:
             raise LcpStepError(
-                f"the impact at t = {self.t:g} s is not one of Moreau's law with one set of contacts (another `law`, or "
-                "contacts that are struck in turn): no derivative is known"
+                f"the impact at t = {self.t:g} s is not one of Moreau's law with one set of contacts "
+                "(another `law`, or contacts that are struck in turn): no derivative is known"
             )
 
     def late(self, strikes: Any) -> bool:

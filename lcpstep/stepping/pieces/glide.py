@@ -87,7 +87,7 @@ def glide(m: Model, plan: Plan, w: Work, t0: float, first: int, last: int) -> No
     if contact:
         w.gap[0], w.rate[0], w.half[0] = g, u, bent
         if k > start:
-            w.turned[0], w.sigma = -h, 0.0
+            w.turned[0], w.sigma = -h, 0.0  # no event for a step at least
             w.end_u[0], w.end_s[0] = G * v - u, s
     w.steps = k
     w.force_evaluations += k - start

@@ -132,7 +132,7 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
         # Rounding must not add up over chattering: it strikes with the speed that it left with
         if w.fall[c] > 0.0 and w.rate[c] < 0.0 and closing:
             w.rate[c] = -w.fall[c]
-        w.before[c], w.p[c] = w.rate[c], 0.0  # 1: is among them
+        w.before[c], w.p[c] = w.rate[c], 0.0  # p marks: 1 where contact c is among those struck
     w.chosen[0] = first
     if w.n_c == 1:
         w.gap[first], w.grounded[first] = 0.0, GROUND

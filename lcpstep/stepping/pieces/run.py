@@ -87,14 +87,14 @@ class LocatedRun(StepRun):
 
     @property
     def now(self) -> float:
-        """Time of the current state [s]."""
+        """Time of the current state, after a step that failed of the last finite one [s]."""
         if self.finite is not None:
             return self.finite[0]
         return self.reached
 
     @property
     def reached(self) -> float:
-        """Time of the step at hand [s]."""
+        """Time that the kernel has reached, within the step at hand too [s]."""
         t = self.t0 + self.plan.h * (self.work.steps - self.first)
         return float(t + self.work.sigma * self.work.under_way)
 

@@ -86,7 +86,7 @@ def tie_tangents(m: Model, c: Rows, n_a: int) -> None:
 
 
 def without_joints(linear: bool, plan: Plan, s: State, c: Rows, n_a: int) -> None:
-    """The problem of contacts and tangents that take part alone, without the joints that follow them.
+    """Mobilities and rates of contacts and tangents that take part, into the problem; joints after them eliminated.
 
     A row that says what joints say has nothing left but the rounding of its rate, which no impulse could change.
     """
@@ -128,8 +128,9 @@ def loads_nothing(s: State, c: Rows, n_a: int) -> bool:
 def rates(m: Model, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
     """What the impulses are asked for, of every row that takes part; whether it is an impact.
 
-    What is held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, they
-    are asked for an end of the approach alone, up to its rounding.
+    `c.blows.v` and `c.blows.u` are `s.v_free` and `s.u` (`Blows.begin`), unless blows follow one another. What is held
+    from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, they are asked for an
+    end of the approach alone, up to its rounding.
     """
     ids, rate, n_f, impact = c.problem.ids, c.problem.rate, c.n_f, False
     for k in range(n_a + n_f + c.n_j):
@@ -277,7 +278,7 @@ def apply(plan: Plan, s: State, c: Rows, n_k: int) -> bool:
 
 
 def apply_once(plan: Plan, s: State, c: Rows, n_k: int) -> None:
-    """The same without friction, where nothing is iterated for."""
+    """next_v = v_free + X^T p without friction, where one pass is enough."""
     n_q, ids, X, p = s.n_q, c.problem.ids, plan.X, c.p
     for i in range(n_q):
         total = s.v_free[i]

@@ -217,7 +217,7 @@ def free_velocity(m: Model, plan: Plan, s: State, t_next: float) -> None:
 
 
 def log_events(m: Model, s: State, c: Rows, t_next: float) -> None:
-    """Note impacts, the beginning of lasting contact, and its end."""
+    """Note impacts, the beginning of lasting contact, and its end; count the steps that contacts have been closed."""
     first, released = s.record.event, False
     for i in range(c.n_c):
         kind = kind_of(c.p[i], s.closed[i])
@@ -228,7 +228,7 @@ def log_events(m: Model, s: State, c: Rows, t_next: float) -> None:
             s.record.note(t_next, i, s.u[i], u, c.p[i], kind)
     if not released:
         return
-    # Those of the law are of contacts that took part in it
+    # Rows at hand are those of contacts that took part in the law: a release has its velocity from rows of now
     gap_rates(m, t_next, s.next_q, s.next_v, c.H, c.H_t)
     for k in range(first, s.record.event):
         line = after(s.record.events, k * COLUMNS)
