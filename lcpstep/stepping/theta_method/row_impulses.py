@@ -128,9 +128,9 @@ def loads_nothing(s: State, c: Rows, n_a: int) -> bool:
 def rates(m: Model, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
     """What the impulses are asked for, of every row that takes part; whether it is an impact.
 
-    `c.blows.v` and `c.blows.u` are `s.v_free` and `s.u` (`Blows.begin`), unless blows follow one another. What is held
-    from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, they are asked for an
-    end of the approach alone, up to its rounding.
+    `c.blows.v` and `c.blows.u` are `s.v_free` and `s.u` (`Blows.begin`), unless blows follow one another. What is
+    held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, they are asked
+    for an end of the approach alone, up to its rounding.
     """
     ids, rate, n_f, impact = c.problem.ids, c.problem.rate, c.n_f, False
     for k in range(n_a + n_f + c.n_j):
