@@ -23,7 +23,10 @@ from lcpstep.trajectory import Trajectory
 if TYPE_CHECKING:
     from lcpstep.kernels.model import Model
 
-LOOKS = 32  # steps that are looked at first; all where these raise a doubt
+LOOKS, SUDDEN = (
+    32,
+    4,
+)  # steps that are looked at first, and those that turned velocities most: all where they raise a doubt
 SHARE = 0.05  # of the energy turned over
 NEAR = 1e-3  # of a step: of the differences of M, and of the time of an event
 STILL = 1e-6  # of the speed that forces alone would give within a step: that of a body at rest
@@ -34,13 +37,13 @@ def unbalanced(run: Trajectory, m: Model, h: float) -> str:
     """How much energy steps h, of that model, lose or gain, in words; "" where they do not."""
     if not isinstance(run.scene.system, (System, LinearSystem)) or driven(run.scene.joints):
         return ""
-    gained, turned_over = _surplus(run, m, h, LOOKS)
-    if not abs(gained) > SHARE * turned_over:
-        return ""
-    gained, turned_over = _surplus(
-        run, m, h, len(run.t) - 1
-    )  # what some steps give and others take is no loss
-    if not abs(gained) > SHARE * turned_over:
+    steps, times = np.arange(len(run.t) - 1), max(1.0, (len(run.t) - 1) / LOOKS)
+    first = steps if times == 1.0 else (np.arange(LOOKS) * times).astype(int)
+    raised = _too_much(*_surplus(run, m, h, first, times)) or _too_much(
+        *_surplus(run, m, h, _sudden(run), 1.0)
+    )
+    gained, turned_over = _surplus(run, m, h, steps, 1.0) if raised else (0.0, 0.0)
+    if not _too_much(gained, turned_over):  # what some steps give and others take is no loss
         return ""
     return (
         f"its steps {'gain' if gained > 0.0 else 'lose'} energy that no force accounts for, {abs(gained):.3g} J of "
@@ -48,18 +51,32 @@ def unbalanced(run: Trajectory, m: Model, h: float) -> str:
     )
 
 
-def _surplus(run: Trajectory, m: Model, h: float, looks: int) -> tuple[float, float]:
-    """Energy without a source in all steps, and all that is turned over, by so many of them."""
+def _too_much(gained: float, turned_over: float) -> bool:
+    """Whether that is more of the energy than steps that resolve the motion would give or take."""
+    return abs(gained) > SHARE * turned_over
+
+
+def _sudden(run: Trajectory) -> Any:
+    """The kept states after which velocities change most, as in a step over a place where forces have no bound."""
+    change = np.max(np.abs(np.diff(run.v, axis=0)), axis=1, initial=0.0)
+    return (
+        np.sort(np.argpartition(change, -SUDDEN)[-SUDDEN:])
+        if len(change) > SUDDEN
+        else np.arange(len(change))
+    )
+
+
+def _surplus(run: Trajectory, m: Model, h: float, k: Any, times: float) -> tuple[float, float]:
+    """Energy without a source in all steps, and all that is turned over, where each of steps k stands for so many."""
     from lcpstep.kernels.surplus import surplus
 
-    k = _smooth(run, h, looks)
+    k = _smooth(run, h, k)
     if len(k) == 0:
         return 0.0, 0.0
     both = np.column_stack([k, k + 1]).ravel()
     gained, work, kinetic, pushed, placed = surplus(m, run.t[both], run.q[both], run.v[both], NEAR * h)
     if kinetic < (STILL * h) ** 2 * pushed + (ROUNDING / h) * (ROUNDING / h) * placed:
         return 0.0, 0.0
-    times = max(1.0, (len(run.t) - 1) / looks)
     return times * gained, kinetic + times * work
 
 
@@ -70,10 +87,9 @@ def driven(rows: Any) -> bool:
     return (rows.motion if isinstance(rows, (LinearContacts, LinearJoints)) else rows.gap_t) is not None
 
 
-def _smooth(run: Trajectory, h: float, looks: int) -> Any:
-    """Of so many kept states those from which a step leads to the next one without an event or work of a contact."""
-    last, t, events, near = len(run.t) - 1, run.t, run.impacts.time, NEAR * h
-    k = np.arange(last) if last <= looks else (np.arange(looks) * (last / looks)).astype(int)
+def _smooth(run: Trajectory, h: float, k: Any) -> Any:
+    """Of kept states k those from which a step leads to the next one without an event or work of a contact."""
+    t, events, near = run.t, run.impacts.time, NEAR * h
     way = t[k + 1] - t[k]
     fits = np.abs(way - h) < near
     if len(events):  # states asked for within steps lie between those before and after a step

@@ -164,3 +164,18 @@ print(*(float(x).hex() for x in surplus(model(m.scene), m.t[both], m.q[both], m.
 def test_the_balance_of_the_sources_alone_is_that_of_what_is_built():
     built, plain = both_ways(PROGRAM)
     assert built == plain
+
+
+def attraction(t, q, v, p, out):
+    out[0] = -1.0 / (q[0] * q[0])
+
+
+@pytest.mark.parametrize("method", [Located(1e-3), Located(1e-3, 4), Moreau(1e-3)])
+def test_a_step_through_a_centre_of_attraction_is_told(method):
+    """From rest at q = 1 the centre is met at pi / sqrt(8); one step in ten thousand gives or takes all the energy."""
+    m = simulate(Scene(System(1, [[1.0]], attraction), 1.0, 0.0, (0.0, 10.0)), method)
+    E = 0.5 * m.v[:, 0] ** 2 - 1.0 / np.abs(m.q[:, 0])
+    assert abs(E[-1] + 1.0) > 100.0
+    assert "energy that no force accounts for" in m.doubt
+    before = simulate(Scene(System(1, [[1.0]], attraction), 1.0, 0.0, (0.0, 1.1)), method)
+    assert before.doubt == ""
