@@ -172,7 +172,7 @@ def attraction(t, q, v, p, out):
 
 @pytest.mark.parametrize("method", [Located(1e-3), Located(1e-3, 4), Moreau(1e-3)])
 def test_a_step_through_a_centre_of_attraction_is_told(method):
-    """From rest at q = 1 the centre is met at pi / sqrt(8); one step in ten thousand gives or takes all the energy."""
+    """From rest at q = 1 the centre is met at pi / sqrt(8); a step in ten thousand gives or takes all energy."""
     m = simulate(Scene(System(1, [[1.0]], attraction), 1.0, 0.0, (0.0, 10.0)), method)
     E = 0.5 * m.v[:, 0] ** 2 - 1.0 / np.abs(m.q[:, 0])
     assert abs(E[-1] + 1.0) > 100.0
