@@ -205,6 +205,7 @@ def test_nothing_of_a_file_is_run(tmp_path):
     assert "another one in this version" in changed.reason
 
 
+@pytest.mark.slow
 def test_every_damage_is_told(tmp_path):
     run = simulate(scenes.bouncing_ball(t_end=1.0), Located(0.01))
     file = run.save(tmp_path / "run.nc")

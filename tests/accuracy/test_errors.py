@@ -142,6 +142,7 @@ def test_balls_dropped_from_two_heights_differ_as_their_parabolas_do():
     assert max(getattr(Difference(runs[0], runs[0]), name) for name in MEASURES) < 1e-15
 
 
+@pytest.mark.slow
 def test_states_of_time_stepping_come_close_in_every_measure():
     scene = scenes.impact_oscillator(t_end=20.0)
     exact, coarse, fine = (simulate(scene, m) for m in (EventDriven(), Moreau(1e-3), Moreau(3e-5)))
@@ -190,6 +191,7 @@ def brute(a, b, n=200):
     return max(d.min(axis=1).max(), d.min(axis=0).max())
 
 
+@pytest.mark.slow
 @settings(max_examples=15, deadline=None)
 @given(points, points, st.randoms(use_true_random=False))
 def test_the_distance_of_polylines_is_that_of_their_points(a, b, random):

@@ -35,6 +35,7 @@ def test_the_order_of_exact_powers_is_their_exponent():
     assert fitted_order([1e-1, 1e-2, 1e-3], [0.1, 0.1, 0.1]) is None
 
 
+@pytest.mark.slow
 def test_the_interval_holds_the_true_order_nineteen_times_in_twenty():
     rng, h, held = np.random.default_rng(1), np.geomspace(1e-4, 1e-1, 6), 0
     for _ in range(1000):
@@ -235,6 +236,7 @@ def test_a_run_that_ends_early_has_no_errors_but_a_reason():
 # --- command
 
 
+@pytest.mark.slow
 def test_the_command_writes_tables_and_a_picture(capsys, tmp_path):
     arguments = "study impact-oscillator --methods moreau --t-end 10 --h 1e-2 4e-3 1e-3 --repeats 1"
     assert main([*arguments.split(), "--measures", "sup_position", "--out", str(tmp_path)]) == DONE

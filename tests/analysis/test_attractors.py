@@ -160,6 +160,7 @@ def test_samples_of_one_distribution_are_alike_and_of_two_are_not(monkeypatch):
     assert other["phase"].low <= other["phase"].distance <= other["phase"].high + 0.01
 
 
+@pytest.mark.slow
 def test_two_chaotic_runs_of_one_method_are_one_attractor():
     scene = cam_follower(rpm=660.0)
     a, b = (sample(scene, EventDriven(), x, 4000, drop=200) for x in ([0.4, 0.4], [0.9, -3.0]))
@@ -167,6 +168,7 @@ def test_two_chaotic_runs_of_one_method_are_one_attractor():
     assert min(x.p_value for x in found.values()) > 0.01
 
 
+@pytest.mark.slow
 def test_a_motion_that_was_not_waited_for_is_not_named_but_says_so():
     """The two multipliers of the bilinear oscillator turn, and their product is exp(-damping period)."""
     slow = driven_bilinear_oscillator(damping=0.03, omega=3.0)

@@ -141,6 +141,7 @@ def test_crossings_close_together_are_told_apart():
         assert min(abs(c.p - p) for c in again) < 1e-9
 
 
+@pytest.mark.slow
 def test_two_crossings_a_ten_millionth_apart_are_two():
     half, first = 1e-5, 124.998296820803  # the first impact meets the corner c
 

@@ -86,6 +86,7 @@ def test_orbit_follows_a_branch_and_names_its_flip(capsys, tmp_path):
         assert "flip" in data["special_kind"].values
 
 
+@pytest.mark.slow
 def test_orbit_takes_the_period_that_the_motion_settles_to(capsys):
     status, out, _ = run(capsys, "orbit", "cam-follower")
     assert status == DONE

@@ -52,6 +52,7 @@ def test_its_periods_double_at_three_and_at_one_plus_the_root_of_six():
     assert [s.p for s in two.of_kind("flip")] == pytest.approx([1.0 + math.sqrt(6.0)], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_its_period_three_is_born_at_one_plus_the_root_of_eight():
     born = 1.0 + math.sqrt(8.0)
     assert periodic_points(LOGISTIC.at(r=born - 1e-3), [[0.0], [1.0]], 3) == []

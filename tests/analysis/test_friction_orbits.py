@@ -77,6 +77,7 @@ def test_the_stick_slip_orbit_is_dead_beat_and_has_its_period(kind):
         assert np.max(np.abs(found.multipliers)) < 1e-10
 
 
+@pytest.mark.slow
 def test_the_woodpecker_has_a_stable_orbit_whatever_the_tolerance():
     found = []
     for tolerance in (1e-9, 1e-12):

@@ -93,6 +93,7 @@ def test_the_orbit_of_the_bilinear_oscillator_is_that_of_two_pieces_matched(omeg
     assert np.prod(orbit.multipliers) == pytest.approx(product, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_the_branch_of_the_bilinear_oscillator_flips_where_the_pieces_do():
     def make(omega):
         return scenes.driven_bilinear_oscillator(damping=0.1, omega=omega)

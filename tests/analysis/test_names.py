@@ -86,6 +86,7 @@ def test_chattering_and_chaos_have_their_names_by_time_stepping():
     assert chaos.lyapunov.largest == pytest.approx(0.385, abs=0.05)
 
 
+@pytest.mark.slow
 def test_an_attractor_can_be_seen():
     (chaos,) = found(660.0, EventDriven(), 5).found
     assert len(np.unique(chaos.cloud, axis=0)) > 7000

@@ -157,6 +157,7 @@ def test_the_section_does_not_matter(cam_orbit):
         assert abs(ball(proof.impacts[0].before)[0] - ball(reference.impacts[0].before)[0]) < 1e-24
 
 
+@pytest.mark.slow
 def test_an_orbit_of_two_periods_is_proved_and_one_that_repeats_earlier_is_not(cam_orbit):
     start = iterate(StroboscopicMap(scenes.cam_follower(rpm=739.35), EventDriven()), [0.8, -74.0], 1000)[-1]
     orbit = periodic_orbit(scenes.cam_follower(rpm=739.35), start, 2)

@@ -76,6 +76,7 @@ def test_the_rises_have_the_smoothness_they_are_named_for():
     assert np.max(np.abs(np.diff(acceleration))) < 0.01
 
 
+@pytest.mark.slow
 def test_branches_of_the_normal_forms_are_their_closed_forms():
     _, data = maps.normal_forms()
     for branch in data["fold: x → x + a − x²"]:

@@ -132,6 +132,7 @@ def by_exception(t, q, v, p, out):
         out[0] = q[1] + 1.05 - p[0]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::lcpstep.model.UncompiledCallback")
 def test_what_an_exception_hides_is_not_certified():
     """Intervals have a logarithm wherever a part of the window has one."""

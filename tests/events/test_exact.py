@@ -49,6 +49,7 @@ def state_difference(m, exact, times, to_relative=None):
     return worst
 
 
+@pytest.mark.slow
 def test_the_impact_oscillator_over_a_hundred_units_of_time():
     m, exact = simulate(scenes.impact_oscillator(), EventDriven()), oscillator()
     assert len(exact.events) == 32

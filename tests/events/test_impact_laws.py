@@ -108,6 +108,7 @@ def bent(angles, rates, mu, r, law):
     return replace(scene, q0=before, v0=rates, p=[0.0, floor], t_span=(0.0, 2e-3))
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(
     st.floats(-1.2, 1.2), st.floats(-1.2, 1.2), st.floats(0.0, 2.0), st.floats(0.0, 1.0), st.floats(0.0, 6.3)

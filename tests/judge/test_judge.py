@@ -142,6 +142,7 @@ TURNING = Description(
 )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_what_a_run_says_itself_is_not_silent():
     verdict = judged(TURNING, ["located"], share=0.0)
     assert verdict.endings == {"located": "doubt"}

@@ -150,6 +150,7 @@ def test_hops_that_others_interrupt_end():
     assert speeds[-1] < 1e-10
 
 
+@pytest.mark.slow
 def test_elastic_hops_beside_what_yields_fade_as_between_events():
     """Each brings six parts in seven of its speed to the next, down to the tolerance, and then there are no more."""
     d = JOINTED["an elastic and a plastic wall that bring five masses on a sphere to rest on them"][0]

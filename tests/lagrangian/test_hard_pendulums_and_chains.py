@@ -55,6 +55,7 @@ def test_the_ratio_of_the_rocking_block_conserves_the_moment_about_the_new_corne
     assert impact_ratio(b, h) == pytest.approx(before / after, rel=1e-15)
 
 
+@pytest.mark.slow
 def test_the_double_pendulum_is_that_of_the_series():
     impacts, states = reference(["0.5", "1"], digits=25, order=20)
     np.testing.assert_allclose(np.array(impacts, dtype=float), REFERENCE_IMPACTS[: len(impacts)], rtol=1e-14)

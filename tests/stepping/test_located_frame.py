@@ -48,6 +48,7 @@ def test_the_cam_follower_moves_the_same_in_both_coordinates(rpm, h):
     assert np.min(relative.q) > -1e-12
 
 
+@pytest.mark.slow
 def test_order_two_in_a_frame_that_shakes_beside_a_stop_that_moves():
     scene = two_masses()
     reference = simulate(scene, EventDriven())

@@ -166,6 +166,7 @@ def test_moving_curved_obstacles_are_struck_to_rounding_and_never_entered():
     np.testing.assert_allclose(impacts.after, -0.6 * impacts.before, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_sliding_in_a_moving_hollow_converges_with_order_two():
     scene = over_a_moving_hollow(0.0, 1.0)
     at = np.linspace(0.0, 1.0, 21)

@@ -138,6 +138,7 @@ def test_a_thousand_blocks_on_a_belt_stick_and_slip_as_one_does():
     assert np.ptp(run.q[:, ::2], axis=1).max() < 1e-12
 
 
+@pytest.mark.slow
 def test_a_coefficient_that_is_none_is_named():
     def wrong(t, q, u, p, out):
         for c in range(len(out)):
@@ -241,6 +242,7 @@ def test_walls_that_close_on_a_body_end_the_run(mu):
     assert run.t[-1] == pytest.approx(1.0, abs=0.02)
 
 
+@pytest.mark.slow
 def test_what_these_steps_do_not_know_takes_the_dense_ones():
     flat = scenes.hinged_chain(n=3, t_end=0.1)
     c = flat.contacts
