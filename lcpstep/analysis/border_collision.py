@@ -16,6 +16,7 @@ Solitons and Fractals 10 (1999); G. Osorio, Complex Behavior in Impacting System
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -78,10 +79,17 @@ class PiecewiseLinearMap:
 
     def __call__(self, x: ArrayLike, m: float) -> Array:
         """The image of x at the parameter m, (d,)."""
-        x = np.asarray(x, dtype=float)
-        minus = float(np.asarray(self.C) @ x + self.D * m) < 0.0
-        A, B = (self.A_minus, self.B_minus) if minus else (self.A_plus, self.B_plus)
-        return np.asarray(np.asarray(A) @ x + np.asarray(B) * m)
+        return self.at(m)(np.asarray(x, dtype=float))
+
+    def at(self, m: float) -> Callable[[Array], Array]:
+        """The map of states (d,) at the parameter m, for many images."""
+        C, A_minus, A_plus = map(np.asarray, (self.C, self.A_minus, self.A_plus))
+        border, b_minus, b_plus = -self.D * m, np.asarray(self.B_minus) * m, np.asarray(self.B_plus) * m
+
+        def image(x: Array) -> Array:
+            return np.asarray(A_minus @ x + b_minus if C @ x < border else A_plus @ x + b_plus)
+
+        return image
 
     def gap(self) -> tuple[float, Array]:
         """What keeps the map from being continuous, relative to its matrices, and the vector E that comes nearest."""
@@ -179,15 +187,13 @@ def diagram(
     has no points.
     """
     checks.instance("f", f, PiecewiseLinearMap)
-    C, A, A_plus, B, B_plus = map(np.asarray, (f.C, f.A_minus, f.A_plus, f.B_minus, f.B_plus))
-    points, x = [], np.zeros(len(C))
-    size = 1.0 + float(np.max(np.abs(np.concatenate([B, B_plus]))))
+    points, x = [], np.zeros(len(np.asarray(f.C)))
+    size = 1.0 + float(np.max(np.abs(np.concatenate([np.asarray(f.B_minus), np.asarray(f.B_plus)]))))
     for value in counted(checks.vector("m", m).tolist()):
         orbit: list[Array] = []
-        border, limit = -f.D * value, bound * size * abs(value)
-        b, b_plus = B * value, B_plus * value
+        image, limit = f.at(value), bound * size * abs(value)
         for k in range(drop + keep):
-            x = A @ x + b if C @ x < border else A_plus @ x + b_plus
+            x = image(x)
             if not all(-limit <= a <= limit for a in x.tolist()):
                 orbit, x = [], np.zeros_like(x)
                 break
