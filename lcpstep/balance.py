@@ -23,10 +23,8 @@ from lcpstep.trajectory import Trajectory
 if TYPE_CHECKING:
     from lcpstep.kernels.model import Model
 
-LOOKS, SUDDEN = (
-    32,
-    4,
-)  # steps that are looked at first, and those that turned velocities most: all where they raise a doubt
+LOOKS = 32  # steps that are looked at first; all where these raise a doubt,
+SUDDEN = 4  # or those that turned velocities most
 SHARE = 0.05  # of the energy turned over
 NEAR = 1e-3  # of a step: of the differences of M, and of the time of an event
 STILL = 1e-6  # of the speed that forces alone would give within a step: that of a body at rest
@@ -37,12 +35,13 @@ def unbalanced(run: Trajectory, m: Model, h: float) -> str:
     """How much energy steps h, of that model, lose or gain, in words; "" where they do not."""
     if not isinstance(run.scene.system, (System, LinearSystem)) or driven(run.scene.joints):
         return ""
-    steps, times = np.arange(len(run.t) - 1), max(1.0, (len(run.t) - 1) / LOOKS)
-    first = steps if times == 1.0 else (np.arange(LOOKS) * times).astype(int)
-    raised = _too_much(*_surplus(run, m, h, first, times)) or _too_much(
-        *_surplus(run, m, h, _sudden(run), 1.0)
-    )
-    gained, turned_over = _surplus(run, m, h, steps, 1.0) if raised else (0.0, 0.0)
+    steps = np.arange(len(run.t) - 1)
+    if len(steps) > LOOKS:
+        times = len(steps) / LOOKS
+        some = _surplus(run, m, h, (np.arange(LOOKS) * times).astype(int), times)
+        if not _too_much(*some) and not _too_much(*_surplus(run, m, h, _sudden(run), 1.0)):
+            return ""
+    gained, turned_over = _surplus(run, m, h, steps, 1.0)
     if not _too_much(gained, turned_over):  # what some steps give and others take is no loss
         return ""
     return (
@@ -57,13 +56,9 @@ def _too_much(gained: float, turned_over: float) -> bool:
 
 
 def _sudden(run: Trajectory) -> Any:
-    """The kept states after which velocities change most, as in a step over a place where forces have no bound."""
-    change = np.max(np.abs(np.diff(run.v, axis=0)), axis=1, initial=0.0)
-    return (
-        np.sort(np.argpartition(change, -SUDDEN)[-SUDDEN:])
-        if len(change) > SUDDEN
-        else np.arange(len(change))
-    )
+    """Of many kept states those after which velocities change most, as over a place where forces have no bound."""
+    change = np.max(np.abs(np.diff(run.v, axis=0)), axis=1)
+    return np.sort(np.argpartition(change, -SUDDEN)[-SUDDEN:])
 
 
 def _surplus(run: Trajectory, m: Model, h: float, k: Any, times: float) -> tuple[float, float]:
