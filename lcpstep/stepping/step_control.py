@@ -237,9 +237,19 @@ class Control(Course):
                 self.made[level] = 1
 
     @property
-    def reached(self) -> tuple[float, float, bool]:
-        """Time at which the step begins, its size [s]; whether that time is the end of the span."""
-        return self.now(), self.step_size(self.level), self.over()
+    def time(self) -> float:
+        """Time at which the step begins [s]."""
+        return self.now()
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the end of the span is reached."""
+        return self.over()
+
+    @property
+    def step(self) -> float:
+        """Its size [s]."""
+        return self.step_size(self.level)
 
 
 def stamp(r: Record, row: int, event: int, late: float, t: float) -> None:

@@ -102,14 +102,13 @@ class StepRun(Run):
             cause()  # an interrupt goes on its way
             if code == WANTED:
                 self.control.prepare()
-        self.arrived = code == REACHED and self.control.reached[2]
+        self.arrived = code == REACHED and self.control.arrived
         return code
 
     def empty(self) -> None:
         """Move what the kernels have written to the recorder's keeping."""
         if self.control is not None:
-            self.t0, self.plan.h, _ = self.control.reached
-            self.first = self.steps
+            self.t0, self.first, self.plan.h = self.control.time, self.steps, self.control.step
         super().empty()
 
     def states(self) -> States:
