@@ -13,7 +13,7 @@ from lcpstep import Moreau, dataset
 from lcpstep.analysis.agreement import Summary, agreement, summary, tolerance_of_stepping
 from lcpstep.analysis.bifurcation import IMPACTS_RECORDED, STARTS, WINDOWS, bifurcation
 from lcpstep.cli.attractor import box
-from lcpstep.cli.common import DONE, making, parameters_of
+from lcpstep.cli.common import DONE, making, parameters_of, vary
 from lcpstep.cli.studies import (
     PARTS,
     files,
@@ -43,7 +43,7 @@ def add(commands: Any) -> None:
         epilog=f"Example: lcpstep bifurcation cam-follower --window 660-760. Windows [rpm]: {', '.join(WINDOWS)}",
     )
     study_arguments(p)
-    p.add_argument("--parameter", default="rpm", help="parameter of the scene that varies (rpm)")
+    p.add_argument("--parameter", help="parameter of the scene that varies (rpm)")
     p.add_argument("--range", type=float, nargs=2, metavar=("LOW", "HIGH"), help="of the parameter")
     p.add_argument(
         "--window", metavar="NAME", help=f"a range of the cam-follower by name: {', '.join(WINDOWS)}"
@@ -75,14 +75,12 @@ def add(commands: Any) -> None:
 def run_bifurcation(options: argparse.Namespace) -> int:
     """`lcpstep bifurcation`."""
     low, high = _range(options)
+    vary(options)
     if options.points < 1:
         raise ValueError(f"--points: expected a positive number, got {options.points}")
     if options.rpm is not None and options.parameter == "rpm":
         raise ValueError("--rpm: it is the parameter that varies; give --range or --window")
     scene = study_scene(options)
-    known = parameters_of(options.scene)
-    if options.parameter not in known:
-        raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
     steps = [Moreau(h=h, theta=options.theta, lcp=options.lcp) for h in options.compare or ()]
     names = files(options, "bifurcation")
     if steps:
@@ -192,7 +190,7 @@ def _range(options: argparse.Namespace) -> tuple[float, float]:
             raise UnknownName("window", options.window, WINDOWS)
         return WINDOWS[options.window]
     if options.range is None:
-        if options.scene == "cam-follower" and options.parameter == "rpm":
+        if options.scene == "cam-follower" and options.parameter in (None, "rpm"):
             return WINDOWS["114-850"]
         names = ", ".join(parameters_of(options.scene))
         raise ValueError(

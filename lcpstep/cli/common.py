@@ -85,6 +85,18 @@ def parameters_of(scene: str) -> dict[str, Any]:
     return SCENES[scene].parameters
 
 
+def vary(options: argparse.Namespace) -> None:
+    """Know the parameter that varies: a name that the scene knows, or its speed of rotation where none is given."""
+    known = parameters_of(options.scene)
+    if options.parameter is None:
+        if "rpm" not in known:
+            names = ", ".join(sorted(known))
+            raise ValueError(f"--parameter: expected the one of {options.scene} that varies, of {names}")
+        options.parameter = "rpm"
+    if options.parameter not in known:
+        raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
+
+
 def arguments_of(options: argparse.Namespace, scene: Any) -> dict[str, Any]:
     """What the scene that the options name was made with: all parameters that have a value."""
     known = parameters_of(options.scene)

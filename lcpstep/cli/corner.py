@@ -20,7 +20,15 @@ from lcpstep.analysis.corner_branches import FixedBranch, orbit_branches, uncert
 from lcpstep.analysis.corner_estimate import agreement, estimate
 from lcpstep.analysis.corners import CornerImpact, corner_impact, local_map
 from lcpstep.cli import proofs
-from lcpstep.cli.common import DONE, FAILED, save_figure, save_text, scene_arguments, scene_with_contacts
+from lcpstep.cli.common import (
+    DONE,
+    FAILED,
+    save_figure,
+    save_text,
+    scene_arguments,
+    scene_with_contacts,
+    vary,
+)
 from lcpstep.cli.studies import share_bar, work_bar
 from lcpstep.errors import LcpStepError
 from lcpstep.maps import StroboscopicMap
@@ -43,9 +51,7 @@ def add(commands: Any) -> None:
         epilog="Example: lcpstep corner cam-follower --from 700 --near 673 --out out",
     )
     scene_arguments(p)
-    p.add_argument(
-        "--parameter", default="rpm", metavar="NAME", help="parameter of the scene that is varied (rpm)"
-    )
+    p.add_argument("--parameter", metavar="NAME", help="parameter of the scene that is varied (rpm)")
     p.add_argument(
         "--from", dest="start", type=float, default=700.0, help="where the orbit is taken from (700)"
     )
@@ -78,6 +84,7 @@ def run_corner(options: argparse.Namespace) -> int:
         raise ValueError(
             f"scene: expected one whose obstacle has corners, as cam-follower; {options.scene!r} has none"
         )
+    vary(options)
     if options.chattering is not None:
         return _run_chattering(options)
 

@@ -22,7 +22,7 @@ from lcpstep.analysis.predictor import INTERRUPTED as INTERRUPTED_WORD
 from lcpstep.analysis.returns import TOLERANCE, return_time, to_shoot_from
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.cli import interrupt, proofs
-from lcpstep.cli.common import DONE, INTERRUPTED, arguments_of, making, parameters_of, save_figure
+from lcpstep.cli.common import DONE, INTERRUPTED, arguments_of, making, save_figure, vary
 from lcpstep.cli.studies import (
     PARTS,
     files,
@@ -33,7 +33,6 @@ from lcpstep.cli.studies import (
     study_scene,
     work_bar,
 )
-from lcpstep.errors import UnknownName
 from lcpstep.files import naming
 from lcpstep.maps import EventMap, SwitchMap, iterate
 from lcpstep.maps.event import KINDS
@@ -77,7 +76,7 @@ def add(commands: Any) -> None:
     )  # fmt: skip
     p.add_argument("--guess", type=float, nargs="+", metavar="X", help="state (q, v) on the section")
     p.add_argument("--transient", type=int, default=500, help="periods to settle without a guess (500)")
-    p.add_argument("--parameter", default="rpm", help="parameter of the branch (rpm)")
+    p.add_argument("--parameter", help="parameter of the branch (rpm)")
     p.add_argument("--range", type=float, nargs=2, metavar=("LOW", "HIGH"), help="of the parameter")
     p.add_argument("--points", type=int, default=400, help="most points of the branch, each way (400)")
     p.add_argument(
@@ -95,10 +94,8 @@ def run_orbit(options: argparse.Namespace) -> int:
     if options.periods is not None:
         checks.count("--periods", options.periods)
     scene, method = study_scene(options), method_of(options)
-    known = parameters_of(options.scene)
-    if options.range is not None and options.parameter not in known:
-        raise UnknownName(f"parameter of {options.scene}", options.parameter, known)
     if options.range is not None:
+        vary(options)
         dataset.check_free(options.parameter, TAKEN)
     if options.range is not None and not options.range[0] < options.range[1]:
         raise ValueError("--range: expected LOW < HIGH, got {:g} {:g}".format(*options.range))

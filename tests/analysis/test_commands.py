@@ -145,7 +145,7 @@ def test_parts_of_another_run_are_not_mixed_with_this_one(capsys, tmp_path):
         (["bifurcation", "impact-oscillator"], "--range: expected LOW HIGH"),
         (
             ["bifurcation", "impact-oscillator", "--range", "1", "2"],
-            "unknown parameter of impact-oscillator 'rpm'",
+            "--parameter: expected the one of impact-oscillator that varies",
         ),
         (["basin", "cam-follower", "--position", "1", "0"], "--position: expected LOW < HIGH"),
         (["basin", "cam-follower", "--grid", "0", "5"], "--grid: expected a positive integer"),
