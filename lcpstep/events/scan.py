@@ -50,6 +50,8 @@ def samples_of(scene: Scene, f: Function, n: int, times: Array) -> Array:
 def scan_interval(scene: Scene, m: Model, rate: float, samples: Seen | None = None) -> float:
     """Longest interval on which the gap acceleration may be taken to change its sign only once.
 
+    At least one between two neighbouring numbers, in spans of a few of them.
+
     rate : fastest rate of the free motion [rad/s], 0 where it is not known
     samples : of what moves by itself, where they have been taken
     """
@@ -60,7 +62,7 @@ def scan_interval(scene: Scene, m: Model, rate: float, samples: Seen | None = No
     # A period that is given says how finely to look, unless what moves is much faster.
     if turn < (2.0 * scan if math.isfinite(scene.period) else math.inf):
         scan = min(scan, turn / PER_FORCING)
-    return scan
+    return max(scan, math.ulp(scene.t_span[0]), math.ulp(scene.t_span[1]))
 
 
 def fastest_turn(scene: Scene, m: Model, samples: Seen | None) -> float:

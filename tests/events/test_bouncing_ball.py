@@ -1,6 +1,7 @@
 """The bouncing ball, event by event: geometric impacts, their accumulation, and rest."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -154,3 +155,15 @@ def test_gaps_may_be_measured_in_any_unit_and_direction(scale):
     np.testing.assert_allclose(impacts.time[:40], times[:40], rtol=1e-12)
     np.testing.assert_allclose(-impacts.before[:10], abs(scale) * speeds[:10], rtol=1e-12)
     assert m.q[-1, 0] == pytest.approx(-1.0 / scale, abs=1e-15)
+
+
+@pytest.mark.parametrize("start", [0.0, 1.0, 1e6])
+@pytest.mark.parametrize("neighbours", [1, 2, 5])
+def test_a_span_of_neighbouring_times_ends_where_it_began(start, neighbours):
+    """In a few units of the last place of the time a ball falls by less than rounding."""
+    end = start + neighbours * np.spacing(max(start, 1.0))
+    scene = replace(scenes.bouncing_ball(), t_span=(start, end))
+    run = simulate(scene, EventDriven())
+    assert run.status == Status.DONE, run.message
+    assert run.t[-1] == end
+    np.testing.assert_allclose(run.q[-1], scene.q0, rtol=1e-15)
