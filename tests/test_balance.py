@@ -156,7 +156,7 @@ def force(t, q, v, p, out):
 
 m = simulate(Scene(System(2, mass, force), [0.0, 0.3], [0.0, 0.1], (0.0, 0.6)), Located(0.05))
 both = np.column_stack([np.arange(12), np.arange(1, 13)]).ravel()
-print(*(float(x).hex() for x in surplus(model(m.scene), m.t[both], m.q[both], m.v[both], 5e-5)))
+print(*(float(x).hex() for x in surplus(model(m.scene), m.t[both], m.q[both], m.v[both], 5e-5, False)))
 """
 
 
@@ -179,3 +179,20 @@ def test_a_step_through_a_centre_of_attraction_is_told(method):
     assert "energy that no force accounts for" in m.doubt
     before = simulate(Scene(System(1, [[1.0]], attraction), 1.0, 0.0, (0.0, 1.1)), method)
     assert before.doubt == ""
+
+
+@pytest.mark.parametrize(
+    "wall, method, told",
+    [
+        (0.1, Located(2e-3), False), (0.1, Located(1e-3, 4), False), (0.1, Moreau(1e-3), False),
+        (1e-3, Located(1e-2), True), (1e-3, Located(1e-3), True), (1e-3, Located(1e-3, 4), True),
+        (1e-3, Moreau(1e-3), True),
+    ],
+)  # fmt: skip
+def test_a_wall_before_a_centre_of_attraction_is_told(wall, method, told):
+    """An elastic wall at 0.1, where a step changes the force by a part of it, or at 1e-3, where it is too long."""
+    contacts = LinearContacts([[1.0]], [-wall], restitution=1.0)
+    m = simulate(Scene(System(1, [[1.0]], attraction), 1.0, 0.0, (0.0, 6.0), contacts=contacts), method)
+    E = 0.5 * m.v[:, 0] ** 2 - 1.0 / m.q[:, 0]
+    assert m.status is Status.DONE
+    assert (np.max(np.abs(E + 1.0)) > 100.0, "energy that no force accounts for" in m.doubt) == (told, told)

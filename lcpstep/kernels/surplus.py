@@ -5,6 +5,9 @@
 by Simpson's rule on the cubic through the states at both ends, whose middle is
 
     q = (q0 + q1)/2 - h (v1 - v0)/8,    v = 3 (q1 - q0)/(2 h) - (v0 + v1)/4.
+
+Steps with an impact have no such path: there it is the straight line between both ends at constant speed. To forces
+of a potential all paths are one; what damping takes along the true one is more, so that no gain is seen for nothing.
 """
 
 from __future__ import annotations
@@ -21,11 +24,12 @@ from lcpstep.pointers import Doubles, abs, after, max
 
 
 @cython.ccall
-def surplus(m: Model, t: Any, q: Any, v: Any, near: float) -> Any:
+def surplus(m: Model, t: Any, q: Any, v: Any, near: float, struck: bool) -> Any:
     """Of steps whose ends lie one after the other in t (2 n,), q, v (2 n, n_q): five numbers.
 
-    The sum of what they gain and the sum of |W|; the largest of T, of f^T M^-1 f / 2 and of q^T M q / 2, the last two
-    with the diagonal of M alone: sizes, which tell rounding. near : step of the differences of M(t, q) [s]
+    The sum of what they gain (of `struck` ones, with impacts, which take energy, of those alone that gain) and the sum of |W|; the largest of T, of f^T M^-1 f / 2 and of q^T M q / 2, the last two
+    with the diagonal of M alone: sizes, which tell rounding. near : step of the differences of M(t, q) [s], which is
+    constant in struck steps
     """
     n, count, sums, space = m.n_q, len(t) // 2, np.zeros(5), np.zeros(m.n_q * m.n_q + 3 * m.n_q)
     at, x, rates, work, out = doubles(t), doubles(q), doubles(v), doubles(space), doubles(sums)
@@ -37,12 +41,17 @@ def surplus(m: Model, t: Any, q: Any, v: Any, near: float) -> Any:
             t0, t1 = at[2 * k], at[2 * k + 1]
             h = t1 - t0
             T0, T1 = kinetic(m, t0, q0, v0, work), kinetic(m, t1, q1, v1, work)
-            P0, P1 = power(m, t0, q0, v0, near, work, out), power(m, t1, q1, v1, near, work, out)
             for i in range(n):
-                middle[i] = 0.5 * (q0[i] + q1[i]) - 0.125 * h * (v1[i] - v0[i])
-                rate[i] = 1.5 * (q1[i] - q0[i]) / h - 0.25 * (v0[i] + v1[i])
+                middle[i] = 0.5 * (q0[i] + q1[i]) - (0.0 if struck else 0.125 * h * (v1[i] - v0[i]))
+                rate[i] = (q1[i] - q0[i]) / h
+                if not struck:
+                    rate[i] = 1.5 * rate[i] - 0.25 * (v0[i] + v1[i])
+            if struck:
+                v0 = v1 = rate
+            P0, P1 = power(m, t0, q0, v0, near, work, out), power(m, t1, q1, v1, near, work, out)
             P = power(m, t0 + 0.5 * h, middle, rate, near, work, out)
-            out[0] += T1 - T0 - h * (P0 + 4.0 * P + P1) / 6.0
+            gain = T1 - T0 - h * (P0 + 4.0 * P + P1) / 6.0
+            out[0] += max(gain, 0.0) if struck else gain
             out[1] += h * (abs(P0) + 4.0 * abs(P) + abs(P1)) / 6.0
             out[2] = max(out[2], max(T0, T1))
     return sums
