@@ -1,7 +1,7 @@
 """Whether the steps of a finished run lose or gain energy that no force accounts for.
 
-    |sum of (T(end) - T(start) - W)| > share x (largest T + sum of |W|)            of steps, or of their ends after an event
-     sum of (T(end) - T(start) - W)+  > share x (largest T + sum of |W|)            of steps up to an event, or over one
+    |sum of (T(end) - T(start) - W)| > share x (largest T + sum of |W|)    of steps, or of their ends after an event
+     sum of (T(end) - T(start) - W)+  > share x (largest T + sum of |W|)    of steps up to an event, or over one
 
 W is the work of the forces along the step (`kernels/surplus.py`); obstacles and joints that stand still do none.
 Where steps resolve the motion the left side is below a hundredth of the right one; where they do not, as where a

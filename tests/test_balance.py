@@ -182,7 +182,7 @@ def test_a_step_through_a_centre_of_attraction_is_told(method):
 
 
 @pytest.mark.parametrize(
-    "wall, method, told",
+    ("wall", "method", "told"),
     [
         (0.1, Located(2e-3), False), (0.1, Located(1e-3, 4), False), (0.1, Moreau(1e-3), False),
         (1e-3, Located(1e-2), True), (1e-3, Located(1e-3), True), (1e-3, Located(1e-3, 4), True),

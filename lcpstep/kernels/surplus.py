@@ -27,9 +27,9 @@ from lcpstep.pointers import Doubles, abs, after, max
 def surplus(m: Model, t: Any, q: Any, v: Any, near: float, struck: bool) -> Any:
     """Of steps whose ends lie one after the other in t (2 n,), q, v (2 n, n_q): five numbers.
 
-    The sum of what they gain (of `struck` ones, with impacts, which take energy, of those alone that gain) and the sum of |W|; the largest of T, of f^T M^-1 f / 2 and of q^T M q / 2, the last two
-    with the diagonal of M alone: sizes, which tell rounding. near : step of the differences of M(t, q) [s], which is
-    constant in struck steps
+    The sum of what they gain (of `struck` ones, with impacts, which take energy, of those alone that gain) and the
+    sum of |W|; the largest of T, of f^T M^-1 f / 2 and of q^T M q / 2, the last two with the diagonal of M alone:
+    sizes, which tell rounding. near : step of the differences of M(t, q) [s], which is constant in struck steps
     """
     n, count, sums, space = m.n_q, len(t) // 2, np.zeros(5), np.zeros(m.n_q * m.n_q + 3 * m.n_q)
     at, x, rates, work, out = doubles(t), doubles(q), doubles(v), doubles(space), doubles(sums)
