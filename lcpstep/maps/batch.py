@@ -1,7 +1,7 @@
 """Many runs of one scene over many periods of its forcing, by either integrator: states, impacts, how each ended.
 
 The one door to the fast ways: event-driven runs with closed-form flow (`follow`) and time-stepping in lockstep
-(`lockstep`), and to systems with modes (`modes`); all other systems are simulated one period after another.
+(`lockstep`), and to systems with modes (`modes`); all other systems are simulated one run after another.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from copy import copy
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -30,6 +31,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 IMPACTS_KEPT = 64  # of each period; their number is known beyond
 ROUNDING = 64 * np.finfo(float).eps
+LONGEST = 64  # periods in one run
 
 
 @dataclass(frozen=True, eq=False)
@@ -207,46 +209,74 @@ def _task(
 
 
 def one_by_one(scene: Scene, method: Method, task: Task, strict: bool) -> None:
-    """The task by `simulate`, one run and one period at a time."""
+    """The task by `simulate`, one run after another."""
     for i in counted(range(len(task.starts))):
-        x = task.starts[i].copy()
-        g, _ = scene.gap(task.t_start, x[: scene.n_q], x[scene.n_q :])
-        code = int(Status.DONE)
-        if strict and np.any(g < -ROUNDING * max(1.0, float(np.max(np.abs(x[: scene.n_q]))))):
-            code = INSIDE
-        k = 0
-        while k < task.periods and code == Status.DONE and task.reached[i] == UNREACHED:
-            x, code = _one_period(scene, method, task, x, i, k - task.drop)
-            k += 1
-            if code == Status.DONE and k > task.drop:
+        q = task.starts[i, : scene.n_q]
+        g, _ = scene.gap(task.t_start, q, task.starts[i, scene.n_q :])
+        if strict and np.any(g < -ROUNDING * max(1.0, float(np.max(np.abs(q))))):
+            task.codes[i] = INSIDE
+        else:
+            _follow(scene, method, task, i)
+
+
+def _follow(scene: Scene, method: Method, task: Task, i: int) -> None:
+    """Run i, over ever more periods at a time as long as these go well.
+
+    By methods whose steps need not end with a period; by others, and from where a run over several ends early, one
+    period at a time.
+    """
+    x, k, n, most = task.starts[i].copy(), 0, 1, LONGEST if isinstance(method, EventDriven) else 1
+    while k < task.periods and task.codes[i] == Status.DONE and task.reached[i] == UNREACHED:
+        n = min(n, task.periods - k)
+        run, code = _several_periods(scene, method, task, x, n)
+        if run is None and n > 1:
+            n = most = 1
+            continue
+        task.codes[i], task.taken[i] = code, k + 1
+        for j in range(0 if run is None else n):
+            before, x, k = x, np.concatenate([run.q[j], run.v[j]]), k + 1
+            task.taken[i] = k
+            if k > task.drop:
                 task.states[i, k - 1 - task.drop] = x
-            if code == Status.DONE and len(task.targets):
-                distance = np.max(np.abs(task.targets - x) / task.scale, axis=1)
-                hits = np.flatnonzero(distance <= task.radius)
+                _record(task, i, k - 1 - task.drop, run, j, before)
+            if len(task.targets):
+                hits = np.flatnonzero(np.max(np.abs(task.targets - x) / task.scale, axis=1) <= task.radius)
                 task.reached[i] = hits[0] if len(hits) else UNREACHED
-        task.final[i], task.codes[i], task.taken[i] = x, code, k
+                if len(hits):
+                    break
+        n = min(2 * n, most)
+    task.final[i] = x
 
 
-def _one_period(scene: Scene, method: Method, task: Task, x: Array, i: int, k: int) -> tuple[Array, int]:
-    one = continued(scene, x, (task.t_start, task.t_end))
+def _several_periods(scene: Scene, method: Method, task: Task, x: Array, n: int) -> tuple[Any, int]:
+    """A run over n periods, its states those at their ends, or None; a `Status`."""
+    ends = np.append(task.t_end, task.t_start + np.arange(2, n + 1) * (task.t_end - task.t_start))
+    one = continued(scene, x, (task.t_start, float(ends[-1])))
     try:
-        run = simulate(one, method, keep=[task.t_end])
+        run = simulate(one, method, keep=ends)
     except SimulationError as error:
-        return x, int(error.trajectory.status)
-    if run.status != Status.DONE:
-        return x, int(run.status)
-    if k >= 0:
-        log = run.impacts[run.impacts.kind == Kind.IMPACT]
-        faint = np.abs(log.before) <= ROUNDING * max(1.0, float(np.max(np.abs(x))))
-        log = log[~(faint & (log.time <= task.t_start))]  # a contact closed at the section is no impact
-        later = run.impacts[run.impacts.time > task.t_start]  # a contact closed at the section is no landing
-        shown = log[: task.impacts.shape[2]]
-        task.impacts[i, k, : len(shown)] = np.stack([shown.time, shown.before, shown.after], axis=1)
-        ends = later[later.kind == Kind.STICK]
-        shown = ends[: task.landings.shape[2]]
-        task.landings[i, k, : len(shown)] = shown.time
-        task.counts[i, k] = len(log), len(ends)
-    return np.concatenate([run.q[-1], run.v[-1]]), int(Status.DONE)
+        return None, int(error.trajectory.status)
+    return (run if run.status == Status.DONE else None), int(run.status)
+
+
+def _record(task: Task, i: int, k: int, run: Any, j: int, start: Array) -> None:
+    """What happened in the kept period k of run i, the j-th of these of `_several_periods`, from its start on."""
+    log = np.asarray(run.impacts)
+    if len(log) == 0:
+        return
+    begins = run.t[j - 1] if j else -math.inf
+    log = log[(log["time"] > begins) & (log["time"] <= run.t[j])]
+    time = np.minimum(log["time"] - j * (task.t_end - task.t_start), task.t_end)
+    # A contact closed at the section is no impact, and no landing
+    later, least = time > task.t_start, ROUNDING * max(1.0, float(np.max(np.abs(start))))
+    impacts = np.flatnonzero((log["kind"] == Kind.IMPACT) & (later | (np.abs(log["before"]) > least)))
+    ends = np.flatnonzero((log["kind"] == Kind.STICK) & later)
+    shown = impacts[: task.impacts.shape[2]]
+    what = time[shown], log["before"][shown], log["after"][shown]
+    task.impacts[i, k, : len(shown)] = np.stack(what, axis=1)
+    shown = ends[: task.landings.shape[2]]
+    task.landings[i, k, : len(shown)] = time[shown]
+    task.counts[i, k] = len(impacts), len(ends)
 
 
 def continued(scene: Scene, x: Array, t_span: tuple[float, float]) -> Scene:

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Kind, Moreau, simulate
 from lcpstep.errors import LcpStepError
 from lcpstep.maps import ImpactMap, NoReturn, StroboscopicMap, iterate, periods
-from lcpstep.maps.batch import INSIDE, continued
+from lcpstep.maps.batch import INSIDE, Targets, continued
 
 REST = [0.0, 0.0]
 
@@ -166,3 +166,33 @@ def test_wrong_questions_are_named(change, said):
     given = {"scene": scenes.cam_follower(), "method": EventDriven(), "starts": [0.4, 0.4], "n": 2} | change
     with pytest.raises(ValueError, match=said):
         periods(**given)
+
+
+def swing(t, q, v, p, out):
+    out[0] = -p[0] * v[0] - math.sin(q[0]) + p[1] * math.cos(p[2] * t)
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.3])
+def test_many_periods_of_a_pendulum_between_two_stops_are_those_one_after_another(phase):
+    """Several periods in one run, each with its own impacts, and no further than to a target."""
+    omega = 1.2
+    scene = Scene(
+        System(1, [[1.0]], swing), 0.1, 0.0, (0.0, 1.0), p=(0.3, 0.8, omega), period=2.0 * math.pi / omega,
+        contacts=LinearContacts([[1.0], [-1.0]], [0.5, 0.5], restitution=0.6),
+    )  # fmt: skip
+    starts = np.array([[0.1, 0.0], [-0.3, 0.5]])
+    many = periods(scene, EventDriven(), starts, 20, drop=3, phase=phase)
+    x = starts
+    for k in range(20):
+        one = periods(scene, EventDriven(), x, 1, phase=phase)
+        x = one.final
+        if k >= 3:
+            np.testing.assert_allclose(many.states[:, k - 3], x, atol=1e-10)
+            np.testing.assert_array_equal(many.impacts[:, k - 3], one.impacts[:, 0])
+            np.testing.assert_allclose(many.time[:, k - 3], one.time[:, 0], atol=1e-10)
+            np.testing.assert_allclose(many.before[:, k - 3], one.before[:, 0], atol=1e-10)
+    assert many.impacts.sum() > 40
+    there = Targets(many.states[0, 7:8], np.array([1e-6]), np.ones(2))
+    found = periods(scene, EventDriven(), starts[:1], 20, drop=20, phase=phase, targets=there)
+    first = 1 + np.flatnonzero(np.max(np.abs(many.states[0] - there.points[0]), axis=1) <= 1e-6)[0] + 3
+    assert (found.reached[0], found.taken[0]) == (0, first)
