@@ -79,6 +79,8 @@ def _gain_at_impacts(run: Trajectory, m: Model, h: float) -> tuple[float, float]
     contacts = run.scene.contacts
     if contacts is None or contacts.friction is not None or driven(contacts) or m.mass.given:
         return 0.0, 0.0
+    if len(run.impacts) == 0:
+        return 0.0, 0.0
     k = np.unique(np.searchsorted(run.t, run.impacts.time)) - 1
     k = k[k >= 0]
     k = k[run.t[k + 1] - run.t[k] < (1.0 + NEAR) * h]
@@ -93,7 +95,8 @@ def _between(run: Trajectory, m: Model, h: float, k: Any, struck: bool) -> tuple
 
     if len(k) == 0:
         return 0.0, 0.0, 0.0
-    both = np.column_stack([k, k + 1]).ravel()
+    both = np.repeat(k, 2)
+    both[1::2] += 1
     gained, work, kinetic, pushed, placed = surplus(
         m, run.t[both], run.q[both], run.v[both], NEAR * h, struck
     )
@@ -114,7 +117,7 @@ def _smooth(run: Trajectory, h: float, k: Any) -> Any:
 
     Or the rest of a step, after an event that has a time of its own.
     """
-    t, events, near = run.t, run.impacts.time, NEAR * h
+    t, events, near = run.t, np.asarray(run.impacts)["time"], NEAR * h
     way = t[k + 1] - t[k]
     fits = np.abs(way - h) < near
     if len(events):  # states asked for within steps lie between those before and after a step

@@ -134,11 +134,17 @@ def code_text(f: FunctionType) -> str:
     """What one function is: its code, defaults and what it reads, as a text."""
     read = [f"{name}={value_text(value)}" for name, value in [*values_read(f), *cells(f)]]
     defaults = [value_text(x) for x in (f.__defaults__ or (), *(f.__kwdefaults__ or {}).items())]
+    return f"{f.__module__}.{f.__qualname__} {instructions(f.__code__)} {defaults} {read}"
+
+
+@functools.cache
+def instructions(code: CodeType) -> str:
+    """What code does, and that of the functions defined inside it, as a text."""
     texts = []
-    for code in codes(f.__code__):
-        literals = [c for c in code.co_consts if not isinstance(c, CodeType)]
-        texts.append(f"{code.co_code.hex()} {code.co_names} {literals}")
-    return f"{f.__module__}.{f.__qualname__} {texts} {defaults} {read}"
+    for inner in codes(code):
+        literals = [c for c in inner.co_consts if not isinstance(c, CodeType)]
+        texts.append(f"{inner.co_code.hex()} {inner.co_names} {literals}")
+    return str(texts)
 
 
 def values_read(f: FunctionType) -> Iterator[tuple[str, Any]]:
