@@ -244,3 +244,16 @@ def test_bad_parameters_are_named(h, bound):
         Located(h, max_events=bound)
     with pytest.raises(ValueError, match=r"^(h|max_per_step): expected"):
         Located(h, max_per_step=bound)
+
+
+@pytest.mark.parametrize("order", [2, 4, "exact"])
+@pytest.mark.parametrize("restitution", [1e-300, 1e-12])
+def test_a_blow_that_leaves_next_to_nothing_is_an_impact(order, restitution):
+    """A ball from 1 m strikes once, with sqrt(2 g), and rests: nothing accumulates."""
+    floor = LinearContacts([[1.0]], 0.0, restitution=restitution)
+    m = simulate(
+        Scene(LinearSystem(1.0, force=-9.81), 1.0, 0.0, (0.0, 1.0), contacts=floor), Located(1e-2, order)
+    )
+    assert m.impacts.kind.tolist() == [Kind.IMPACT, Kind.STICK]
+    np.testing.assert_allclose(m.impacts.time, math.sqrt(2.0 / 9.81), rtol=1e-14 + 4.0 * restitution)
+    assert m.impacts.impulse[0] == pytest.approx(math.sqrt(2.0 * 9.81), rel=1e-13)

@@ -11,3 +11,4 @@ cdef extern from *:
     double SAME_TIME "0x1p-49"
     double LATE "1e-9"
     double ROUNDING "0x1p-46"
+    double STOPS "1e-9"

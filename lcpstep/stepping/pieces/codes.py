@@ -22,3 +22,4 @@ INERTIA = 2  # in their place: M alone
 EPS = 2.0**-52
 SAME_TIME = 8 * EPS  # relative: an impact as little after the end of a step belongs to it
 ROUNDING = 64 * EPS  # of sums of a few terms, relative to their size
+STOPS = 1e-9  # restitution: what rebounds no faster has no hops whose times could accumulate

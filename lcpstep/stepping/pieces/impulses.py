@@ -27,6 +27,7 @@ from lcpstep.stepping.pieces.codes import (
     LEFT,
     OPEN,
     ROUNDING,
+    STOPS,
 )
 from lcpstep.stepping.pieces.corners import choose_jumping
 from lcpstep.stepping.pieces.magnitudes import LEAST, speed_terms
@@ -267,7 +268,7 @@ def after_impact(m: Model, plan: Plan, w: Work, c: int, p: float, t: float) -> N
         if w.half[c] < 0.0 and w.close_hits[c] < IN_A_ROW:
             T = min(r * before / w.half[c] / (1.0 - r), w.end - w.sigma)
             p += -2.0 * w.half[c] * T / w.W[c * w.n_c + c]
-        w.record.note(t + T, c, before, 0.0, p, ACCUMULATION)
+        w.record.note(t + T, c, before, 0.0, p, IMPACT if r <= STOPS else ACCUMULATION)
         stick(w, c, t + T)
         return
     w.rate[c] = -r * before if r > 0.0 else 0.0

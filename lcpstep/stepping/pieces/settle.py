@@ -32,6 +32,7 @@ from lcpstep.stepping.pieces.codes import (
     LCP_FAILED,
     NOT_FINITE,
     ROUNDING,
+    STOPS,
 )
 from lcpstep.stepping.pieces.impulses import touch
 from lcpstep.stepping.pieces.keep import keep
@@ -110,7 +111,7 @@ def note(m: Model, plan: Plan, w: Work, start: float, end: float, span: float) -
         closed, pressed, touches = w.status[c] == CLOSED, w.z[c] > 0.0, w.gap[c] == 0.0
         w.turns[c] = w.hops[c] = w.fall[c] = 0.0
         if pressed and not closed:
-            kind = IMPACT if touches and m.restitution[c] == 0.0 else ACCUMULATION
+            kind = IMPACT if touches and m.restitution[c] <= STOPS else ACCUMULATION
             w.record.note(start, c, w.before[c], 0.0 if touches else w.rate[c], w.z[c], kind)
             if touches:
                 stick(w, c, end)
