@@ -256,4 +256,4 @@ def test_a_blow_that_leaves_next_to_nothing_is_an_impact(order, restitution):
     )
     assert m.impacts.kind.tolist() == [Kind.IMPACT, Kind.STICK]
     np.testing.assert_allclose(m.impacts.time, math.sqrt(2.0 / 9.81), rtol=1e-14 + 4.0 * restitution)
-    assert m.impacts.impulse[0] == pytest.approx(math.sqrt(2.0 * 9.81), rel=1e-13)
+    np.testing.assert_allclose(m.impacts.impulse[0], math.sqrt(2.0 * 9.81), rtol=1e-13 + 4.0 * restitution)
