@@ -22,6 +22,7 @@ MAX_ITERATIONS = 30
 HALVINGS = 8  # of a Newton step that does not come closer
 CONVERGED = 1e-11  # residual, relative to the size of the point
 STAGNATED = 1e-8  # a residual that rounding keeps from becoming smaller is accepted below this
+FAR = 1e3  # of the size of the guess: how much larger a point near it may be
 
 
 class NotConverged(LcpStepError):
@@ -76,9 +77,10 @@ def periodic_point(P: Map, x: ArrayLike, n: int = 1) -> PeriodicPoint:
     n = checks.count("n", n)
     x = np.array(checks.vector("x", x))
     F, J = _residual(P, x, n)
-    size = float(np.max(np.abs(x)))  # of the guess at least, for the point may be zero
+    size = guessed = max(float(np.max(np.abs(x))), float(np.max(np.abs(F + x))))  # the point may be zero
     for _ in range(MAX_ITERATIONS):
-        size = max(size, float(np.max(np.abs(x))), float(np.max(np.abs(F + x))))
+        # Where all drifts steadily, steps lead away without end, and no residual is large beside such points
+        size = min(max(size, float(np.max(np.abs(x))), float(np.max(np.abs(F + x)))), FAR * guessed)
         error = float(np.max(np.abs(F)))
         if error <= CONVERGED * size:
             break

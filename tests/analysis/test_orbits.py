@@ -55,6 +55,21 @@ def test_no_fixed_point_is_said():
         periodic_point(lambda x: x + 1.0 + x * x, [0.3])
 
 
+@pytest.mark.parametrize("start", [[0.1, 0.4], [0.0, 2.0], [30.0, -1.0]])
+def test_what_moves_on_steadily_is_no_fixed_point_however_far_away_it_is_sought(start):
+    """Newton's steps are as long as rounding lets them be: no residual is large beside where they lead to."""
+
+    class Conveyed:
+        def __call__(self, x):
+            return np.array([x[0] + 0.3 + 0.1 * x[1] ** 2, 0.5 * x[1] + 1.0])
+
+        def jacobian(self, x):
+            return np.array([[1.0 + 1e-15, 0.2 * x[1]], [0.0, 0.5]])
+
+    with pytest.raises(NotConverged):
+        periodic_point(Conveyed(), start)
+
+
 @pytest.mark.parametrize(
     ("family", "start", "n", "span", "kind", "known"),
     [
