@@ -143,8 +143,8 @@ def unsettled(P: PeriodMap, found: Attractor, states: Array, transient: int, lon
     more = periods_to_settle(states, longest)
     if more:
         return f"still on its way to a periodic motion: take a transient of some {transient + more} periods"
-    rate, error = found.lyapunov.largest, found.lyapunov.error
-    if not -math.inf < rate < -3.0 * error:
+    rate = found.lyapunov.largest
+    if not -math.inf < rate < -found.lyapunov.least:
         return _later(P, found, longest)
     return (
         f"neighbours come together (exponent {rate:.3g} per period), so it ends in a periodic motion, but does "

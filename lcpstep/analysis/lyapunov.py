@@ -22,6 +22,7 @@ from lcpstep.maps.iteration import Map
 from lcpstep.pace import FIRST, Pace
 
 Array = NDArray[np.float64]
+NOTHING = 1e-9  # an exponent per iteration that the digits of derivatives do not tell from zero
 RARE = 0.01  # landings per iteration, below which the growth between them is told
 BLOCKS = 20  # for the standard error
 ALIGNING = 500  # iterations, at most, in which the deviation turns to where it grows most
@@ -45,9 +46,14 @@ class Lyapunov:
     reason: str = ""
 
     @property
+    def least(self) -> float:
+        """What is no zero: three standard errors, or where runs are all alike what derivatives resolve."""
+        return max(3.0 * self.error, NOTHING)
+
+    @property
     def chaotic(self) -> bool:
         """Whether it is positive by more than three standard errors."""
-        return self.largest > 3.0 * self.error and self.largest > 0.0
+        return self.largest > self.least
 
 
 def growth_of_runs(derivatives: Array, drop: int = 20) -> Lyapunov:

@@ -89,3 +89,19 @@ def test_the_error_is_that_of_means_over_blocks():
     found = mean_growth(growth)
     assert found.largest == pytest.approx(np.mean(growth), rel=1e-12)
     assert found.error == pytest.approx(np.std(means, ddof=1) / math.sqrt(20.0), rel=1e-12)
+
+
+@pytest.mark.parametrize("rounding", [-1e-16, 0.0, 1e-16])
+def test_rounding_alike_in_every_iteration_is_no_exponent(rounding):
+    """As of a block that every period conveys as far: standard errors are no larger than its mean."""
+
+    class Conveyed:
+        def __call__(self, x):
+            return x + 0.3
+
+        def jacobian(self, x):
+            return np.array([[1.0 + 4.0 * rounding]])
+
+    found = lyapunov(Conveyed(), [0.0], 1000)
+    assert not found.chaotic
+    assert abs(found.largest) < found.least
