@@ -171,8 +171,9 @@ def sources(scene: Scene) -> list[Source]:
     users = [x for x in found if not _ours(x[1])]
     if not users:
         return []
-    at = np.array(scene.q0), np.array(scene.v0), np.array(scene.p)
-    return [Source(name, f, also, at, rows) for name, f, also, rows in users]
+    p, nowhere = np.array(scene.p), np.zeros(scene.n_q)  # functions of time alone are the same in all states
+    at = {True: (nowhere, nowhere, p), False: (np.array(scene.q0), np.array(scene.v0), p)}
+    return [Source(name, f, also, at[also is None], rows) for name, f, also, rows in users]
 
 
 def belts(scene: Scene) -> list[Source]:

@@ -1,8 +1,12 @@
 """A function that intervals cannot pass is looked at, however many windows there are, no longer than a while."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from lagrangian import LinearContacts, LinearSystem, Scene
+from lcpstep.turns import turns
 from lcpstep.turns.source import FEWEST, LOOKS, MOST_LOOKS, Source
 
 
@@ -30,3 +34,13 @@ def test_what_is_no_number_is_zero():
 
     source = Source("contacts.motion", pole, None, (np.zeros(1), np.zeros(1), np.zeros(0)), 1, "by hand")
     assert np.all(source.values(np.linspace(0.0, 1.0, 5)) == 0.0)
+
+
+def test_what_moves_by_the_time_alone_is_looked_at_once_in_whatever_state_a_scene_begins():
+    """Maps start a run every period, each from another state."""
+
+    def table(t, q, v, p, out):
+        out[0, :] = 0.1 * t * t, 0.2 * t, 0.2
+
+    scene = Scene(LinearSystem(1.0), 1.0, 0.0, (0.0, 1.0), LinearContacts(1.0, motion=table), period=1.0)
+    assert turns(replace(scene, q0=2.0, v0=-1.0)) is turns(scene)
