@@ -36,9 +36,9 @@ class EventDriven:
 
     Notes
     -----
-    One linear degree of freedom under constant and harmonic forces moves in closed form between events, and so do
-    a body that a constant force presses on a floor or belt with constant coefficients of friction, and a system
-    without friction under constant forces with flat contacts at rest; all others by DOP853.
+    One linear degree of freedom with one contact at most, under constant and harmonic forces moves in closed form
+    between events, and so do a body that a constant force presses on a floor or belt with constant coefficients of
+    friction, and a system without friction under constant forces with flat contacts at rest; all others by DOP853.
 
     What the tolerances control is the error of each step, at its end and in between. Positions at any time were at
     most six times atol + rtol |q| off on the catalogue's motions, from 1e-4 to 1e-12 (docs/accuracy.md); where the
