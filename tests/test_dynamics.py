@@ -66,6 +66,14 @@ def test_a_curvature_that_jumps_does_not_drown_in_ever_shorter_steps():
     assert -1.0 - 1e-6 < found < 1.0 + 1e-6  # -1 on one side of it and 1 on the other
 
 
+@pytest.mark.parametrize("place", [-1e-4, -1e-6, -1e-9, 1e-9, 1e-6, 1e-4])
+def test_where_a_curvature_jumps_nearby_differences_are_those_of_the_side_of_the_state(place):
+    contacts = Contacts(n_c=1, gap=bent_gap, jacobian=bent_jacobian)
+    q, v = np.array([place, 1.0]), np.array([3.0, 0.3])
+    found = Point(model(Scene(LinearSystem(M=np.eye(2)), q, v, (0.0, 1.0), contacts))).gap_bias(0.0, q, v)
+    assert found == pytest.approx(-9.0 * np.sign(place), abs=1e-7)
+
+
 def test_models_of_one_scene_share_no_arrays_that_a_run_may_change():
     scene = Scene(system=LinearSystem(M=2.0, K=3.0, force=1.0), q0=0.0, v0=0.0, t_span=(0.0, 1.0))
     first, again = model(scene), model(scene)

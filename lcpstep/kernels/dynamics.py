@@ -137,6 +137,8 @@ def bias(
         low, high = -inf, inf
     d = difference_step(m, t, low, high, q, v, shifted, G, rate)
     beside = middle(t, low, high, d)
+    if beside == 0.0 and not m.gap_t.given and bend(m) > BENT:  # jumps in time are ends of intervals
+        beside = smooth_side(m, t, low, high, q, v, shifted, G, rate, d)
     if beside != 0.0:
         slope_beside(m, t, beside, q, v, shifted, G, rate, d, out)
         return
@@ -175,6 +177,26 @@ def middle(t: float, low: float, high: float, d: float) -> float:
     return min(max(0.0, REACH - (t - low) / d), (high - t) / d - REACH)
 
 
+def smooth_side(
+    m: Model, t: float, low: float, high: float, q: Doubles, v: Doubles,
+    shifted: Doubles, G: Doubles, rate: Doubles, d: float,
+) -> float:  # fmt: skip
+    """On which side of t, in steps, rates are smooth where their slope jumps nearby: not beyond the jump; 0 for none.
+
+    A rate that bends just beside t is all but smooth on the wrong side of it too, but for how far it is from there.
+    """
+    least, side = min(BENT, bend(m) * SMOOTH / BENT), 0.0
+    for k in range(2):
+        beside = 4.0 * k - 2.0
+        if low <= t + (beside - REACH) * d and t + (beside + REACH) * d <= high:
+            bent = differences(m, t, beside, q, v, shifted, G, rate, d)
+            if bent < least:
+                least, side = bent, beside
+    if side == 0.0:
+        differences(m, t, side, q, v, shifted, G, rate, d)
+    return side
+
+
 def differences(
     m: Model, t: float, beside: float, q: Doubles, v: Doubles,
     shifted: Doubles, G: Doubles, rate: Doubles, d: float,
@@ -193,7 +215,12 @@ def differences(
         for c in range(m.n_c):
             now[3 * c + 2] = max(now[3 * c + 2], abs(rate[c]) + size_of_product(G, v, c, m.n_q))
             now[3 * c + k // 2] += (product(G, v, c, m.n_q) + rate[c]) * sign
-    bent = 0.0
+    return bend(m)
+
+
+def bend(m: Model) -> float:
+    """The third one of the differences in `motion_now`, relative."""
+    now, bent = m.motion_now, 0.0
     for c in range(m.n_c):
         if now[3 * c + 2] > 0.0:
             bent = max(bent, abs(now[3 * c + 1] - 2.0 * now[3 * c]) / now[3 * c + 2])

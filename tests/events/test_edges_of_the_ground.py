@@ -231,3 +231,30 @@ def rows_along(t, q, v, p, out):
 
 def two_at_rest(t, q, v, p, out):
     out[:] = 0.0
+
+
+def beyond(q):
+    """How far the centre of a disc of radius 1 is beyond the edge of its table, which it rolls around."""
+    return max(q[0], 0.0)
+
+
+def distance(t, q, v, p, out):
+    out[0] = np.hypot(beyond(q), q[1]) - 1.0
+
+
+def direction(t, q, v, p, out):
+    r = np.hypot(beyond(q), q[1])
+    out[0, 0], out[0, 1] = beyond(q) / r, q[1] / r
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(0.1, 4, tolerance=1e-8)])
+@pytest.mark.parametrize("speed", [3.14, 3.3, 5.0, 12.0])
+def test_a_disc_faster_than_its_weight_can_turn_flies_off_the_edge_where_the_curvature_jumps(method, speed):
+    """Beyond it no force would hold it at speeds above sqrt(g R); the gap's acceleration is left to differences."""
+    edge = 0.5 / speed
+    table = Contacts(1, distance, direction)
+    run = simulate(Scene(FALLS, [-0.5, 1.0], [speed, 0.0], (0.0, edge + 0.5), table), method)
+    t = np.linspace(0.0, edge + 0.5, 301)
+    exact = np.stack([speed * t - 0.5, 1.0 - 0.5 * 9.81 * np.maximum(t - edge, 0.0) ** 2], axis=1)
+    assert run.status == Status.DONE
+    np.testing.assert_allclose(run.at(t)[0], exact, atol=1e-10)
