@@ -44,10 +44,10 @@ from lcpstep.events.flight.run import Flights
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, Pieces
 from lcpstep.events.running import Moved
 from lcpstep.recording import States
+from lcpstep.stepping.again import Again
 from lcpstep.stepping.interpolation import Bent, Linear, Parabolic
 from lcpstep.stepping.located import Located
 from lcpstep.stepping.moreau import Moreau
-from lcpstep.stepping.pieces.run import Again
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 MODELS = (

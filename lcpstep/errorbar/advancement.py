@@ -22,7 +22,7 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.status import DONE, STEP_TOO_SMALL
 from lcpstep.model import looked_at
 from lcpstep.recording import LOGGED, Kept, in_order
-from lcpstep.stepping.pieces.run import Again
+from lcpstep.stepping.again import Again
 from lcpstep.trajectory import IMPACT_DTYPE, Counts, Status, Trajectory
 
 Array = NDArray[np.float64]

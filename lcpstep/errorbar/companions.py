@@ -34,9 +34,9 @@ from lcpstep.events import EventDriven
 from lcpstep.events.driven import LEAST_TOLERANCE
 from lcpstep.faults import forget
 from lcpstep.recording import Kept
+from lcpstep.stepping.again import Again
 from lcpstep.stepping.located import Located, require_exact
 from lcpstep.stepping.moreau import Moreau
-from lcpstep.stepping.pieces.run import Again
 from lcpstep.trajectory import Trajectory
 
 KNOWN = (Moreau, Located, EventDriven)  # methods that have companions

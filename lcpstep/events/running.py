@@ -94,9 +94,14 @@ class Integrated(EventRun):
         constant: bool,
     ) -> None:  # fmt: skip
         shape = (1, scene.n_q) if constant else (7, 2 * scene.n_q)  # an acceleration, or dense output
-        super().__init__(method, scene, kept, Recorder(scene.n_q, columns, kept, shape if kept.all else None))
+        dense = shape if kept.all and self.is_dense(method, scene) else None
+        super().__init__(method, scene, kept, Recorder(scene.n_q, columns, kept, dense))
         self.clock, self.motion, self.scan, self.constant = clock, motion, scan, constant
         clock.record, clock.tally = self.recorder.record, self.tally
+
+    def is_dense(self, method: Any, scene: Scene) -> bool:
+        """Whether the motion after each kept state is kept along with it."""
+        return True
 
     @property
     def closed_ones(self) -> list[int]:

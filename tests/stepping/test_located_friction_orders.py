@@ -253,3 +253,27 @@ def test_a_tolerance_that_no_step_meets_is_said():
     run = simulate(scenes.coulomb_oscillator(), Located(1.0, order=4, tolerance=1e-16))
     assert run.status == Status.STEP_TOO_SMALL
     assert "tolerance" in run.message
+
+
+def shaking(t, q, v, p, out):
+    out[0, 0], out[0, 1], out[0, 2] = SHAKEN * math.sin(t), SHAKEN * math.cos(t), -SHAKEN * math.sin(t)
+
+
+SHAKEN = 0.5  # m; at 1 rad/s far below the acceleration of gravity
+
+
+@pytest.mark.parametrize(
+    "method", [Located(0.1, tolerance=1e-4), Located(0.1, 4, tolerance=1e-6), Located(0.1, order=4)], ids=str
+)
+def test_between_its_steps_a_body_on_a_shaken_floor_stays_there(method):
+    """Steps along the floor may be long, and say nothing of how it moves in between."""
+    floor = LinearContacts([[0.0, 1.0]], motion=shaking, friction=Coulomb(0.4, [[1.0, 0.0]]))
+    scene = Scene(
+        LinearSystem(np.eye(2), force=[0.0, -9.81]), [0.0, 0.0], [3.0, SHAKEN], (0.0, 2.0), contacts=floor
+    )
+    m = simulate(scene, method)
+    t = np.linspace(0.0, 2.0, 777)
+    q, v = m.at(t)
+    np.testing.assert_allclose(q[:, 1], SHAKEN * np.sin(t), atol=1e-12)
+    np.testing.assert_allclose(v[:, 1], SHAKEN * np.cos(t), atol=1e-12)
+    np.testing.assert_array_equal(simulate(scene, method, keep=t).q, q)

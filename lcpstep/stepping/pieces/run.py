@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.errors import SimulationError, SimulationInterrupted
+from lcpstep.errors import SimulationError
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.looks import all_finite
 from lcpstep.model import model
 from lcpstep.recording import SPARE, Kept, Recorder, States
 from lcpstep.stepping import adaptive
+from lcpstep.stepping.again import Again
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.stepping.located_by_tolerance import Attempts
 from lcpstep.stepping.pieces.carried import displaced
@@ -185,43 +186,3 @@ class LocatedRun(StepRun):
             words = f"no impulses or forces satisfy contact{'s' * (n > 1)} {contacts} together"
             return f"{no_way_out(self.scene, self.now, self.state[0], contacts) or words} {self.where}"
         return super().why(code)
-
-
-@dataclass(frozen=True, eq=False)
-class Again:
-    """States at any time, by another run that keeps them; one that ends early, ends in the state q_end, v_end.
-
-    dear : it takes as long as the run
-    """
-
-    dear: ClassVar[bool] = True
-    method: Any
-    scene: Scene
-    q_end: Array
-    v_end: Array
-
-    def __call__(self, times: Array) -> tuple[Array, Array]:
-        """Q and v at these times, each (m, n_q)."""
-        if len(times) == 0:
-            return np.zeros((0, len(self.q_end))), np.zeros((0, len(self.q_end)))
-        unique, place = np.unique(times, return_inverse=True)
-        past = False
-
-        def look(now: float) -> None:
-            nonlocal past
-            past = bool(now > unique[-1])
-            if past:
-                raise KeyboardInterrupt  # nobody asks for what comes
-
-        try:
-            m = self.method.run(self.scene, Kept.parse(unique, self.scene.t_span), look)
-        except SimulationInterrupted as stopped:
-            if not past:
-                raise
-            m = stopped.trajectory
-        except SimulationError as stopped:
-            m = stopped.trajectory
-        n = len(unique) - len(m.t)  # times as late as the end to rounding, which the run no longer passes
-        q = np.vstack([m.q, np.tile(self.q_end, (n, 1))])
-        v = np.vstack([m.v, np.tile(self.v_end, (n, 1))])
-        return q[place], v[place]

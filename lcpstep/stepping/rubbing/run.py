@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
-from lagrangian import Scene
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import LinearContacts, LinearJoints, Scene
 from lcpstep.events.contacts.run import ContactRun, start
+from lcpstep.recording import States
 from lcpstep.stepping.adaptive import FIRST
+from lcpstep.stepping.again import Again
 from lcpstep.stepping.rubbing.steps import RubbingSteps
 from lcpstep.stepping.steps import divided
 from lcpstep.trajectory import Status
@@ -14,6 +20,7 @@ from lcpstep.trajectory import Status
 if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
 
+Array = NDArray[np.float64]
 # Absolute and relative: hops that rise no higher, and sliding velocities of this size, are over
 ROUNDING = 1e-12
 
@@ -33,6 +40,20 @@ class RubbingRun(ContactRun):
         system.next_step = FIRST * span if method.tolerance else h
         return system
 
+    def is_dense(self, method: Located, scene: Scene) -> bool:
+        """Whether cubics between kept states are as good as the steps.
+
+        Short ones of order two, and all where cubics stay on the rows held: on straight ones, at rest.
+        """
+        short = method.order == 2 and method.tolerance is None
+        return short or (is_straight(scene.contacts) and is_straight(scene.joints))
+
+    def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
+        """States at any time: by the cubics, or by another run."""
+        if self.is_dense(self.method, self.scene):
+            return super().dense(s)
+        return Again(self.method, self.scene, *self.state)
+
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
         if code == Status.PROJECTION_FAILED:
@@ -46,3 +67,8 @@ class RubbingRun(ContactRun):
     def horizon(self) -> float:
         """How far ahead the run looks [s]."""
         return min(self.now + self.method.h, self.scene.t_span[1])
+
+
+def is_straight(rows: Any) -> bool:
+    """Whether contacts or joints have constant Jacobians and do not move by themselves."""
+    return rows is None or (isinstance(rows, (LinearContacts, LinearJoints)) and rows.motion is None)
