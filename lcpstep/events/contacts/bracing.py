@@ -12,13 +12,14 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
-from lcpstep.events.contacts.equations import force_noise
+from lcpstep.events.contacts.equations import force_noise, size_of_loads
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import accelerate_as_held, hold_modes
 from lcpstep.events.rows.equations import size_of_acceleration
 from lcpstep.events.rows.held import is_held
+from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.vectors import product
-from lcpstep.pointers import abs
+from lcpstep.pointers import abs, max
 
 MOST = 4  # contacts at rest: of more not every way is tried
 WAYS = 4  # of a contact: it sticks, leans on either edge, or carries nothing
@@ -37,9 +38,12 @@ def braced(s: Rubbing) -> bool:
             ways *= WAYS
     if resting < 2 or resting > MOST or carries(s, -STILL):
         return True
+    independent = 0  # rows, of the first way, in which all stick
     for way in range(ways):
         choose(s, way)
-        if hold_modes(s.rows) and carries(s, STILL):
+        held = hold_modes(s.rows)
+        independent = max(independent, s.rows.n_held)
+        if held and s.rows.n_held == independent and carries(s, STILL):
             return True
     return False
 
@@ -61,9 +65,12 @@ def choose(s: Rubbing, way: int) -> None:
 
 
 def carries(s: Rubbing, inside: float) -> bool:
-    """Whether what rests stays at rest by the rows held, with forces so far within the cones, or rounding."""
+    """Whether what rests stays at rest by the rows held, with forces so far within the cones, or rounding.
+
+    Normals, too, where forces may be outside by a little: what begins to lean does so with none.
+    """
     accelerate_as_held(s.rows)
-    within, noise = True, force_noise(s)
+    within, noise = True, force_noise(s) * max(1.0, -inside / NOISE)
     for c in range(s.n_c):
         i = s.n_j + c
         T = i + s.n_c
@@ -79,4 +86,5 @@ def carries(s: Rubbing, inside: float) -> bool:
 
 def is_still(s: Rubbing, i: int) -> bool:
     """Whether row i has no acceleration."""
-    return abs(product(s.R, s.a, i, s.n_q) + s.bias[i]) <= STILL * size_of_acceleration(s.rows, i, s.a)
+    size = size_of_acceleration(s.rows, i, s.a) + size_of_loads(s, i)
+    return abs(product(s.R, s.a, i, s.n_q) + s.bias[i]) <= STILL * size

@@ -12,6 +12,7 @@ from lcpstep.events.rows.equations import (
     renew_biases,
     renew_rates,
     respond,
+    size_of,
 )
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.dynamics import gaps
@@ -89,6 +90,14 @@ def force_noise(s: Rubbing) -> float:
     for j in range(s.n_q):
         size = max(size, load_terms(s, j))
     return NOISE * size
+
+
+def size_of_loads(s: Rubbing, i: int) -> float:
+    """Size of the terms of what the forces of joints and contacts make of row i's acceleration."""
+    size = 0.0
+    for k in range(s.n_r):
+        size += abs(s.multiplier[k]) * size_of(s.rows, i, 0.0, after(s.MR, k * s.n_q))
+    return size
 
 
 def load_terms(s: Rubbing, j: int) -> float:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
+from lcpstep.events.contacts.equations import size_of_loads
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.rows.contacts import rubs
 from lcpstep.events.rows.equations import renew_biases, size_of_acceleration
@@ -104,7 +105,4 @@ def strays(s: Rubbing, i: int, a: Doubles, least: float) -> bool:
     alpha = 0.0 if is_held(s.rows, i) else abs(product(s.R, a, i, s.n_q) + s.bias[i])
     if alpha == 0.0:
         return False
-    size = size_of_acceleration(s.rows, i, a)
-    for k in range(s.n_r):
-        size += abs(s.W[i * s.n_r + k] * s.multiplier[k])
-    return alpha > least * size
+    return alpha > least * (size_of_acceleration(s.rows, i, a) + size_of_loads(s, i))

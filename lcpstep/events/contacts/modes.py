@@ -97,9 +97,8 @@ def begin_to_slide(s: Rubbing, n_a: int, n_f: int) -> bool:
     """Give those that the forces found do not keep from sliding the coefficient of what slides; are there any?"""
     some = False
     for f in range(n_f):
-        c, rate = s.problem.ids[s.problem.carrier[f]], acceleration(s, n_a + f, n_a, n_f)
-        goes = abs(rate) > NOISE * size_of_terms(s, n_a + f, n_a, n_f)
-        if goes and s.problem.mu[c] != s.mu[c]:
+        c = s.problem.ids[s.problem.carrier[f]]
+        if s.problem.mu[c] != s.mu[c] and moves(s.problem, s.problem.impulse, n_a + f, n_a + n_f):
             s.problem.mu[c] = s.mu[c]
             some = True
     return some

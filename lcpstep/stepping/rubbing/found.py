@@ -15,6 +15,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
+from lcpstep.events.contacts.equations import size_of_loads
 from lcpstep.events.contacts.guards import first_fall, read
 from lcpstep.events.contacts.hops import FAINT
 from lcpstep.events.contacts.state import GUARDS
@@ -61,7 +62,8 @@ def widen_bands(s: Strides) -> None:
             g, i = g + 1, i + s.n_c
         elif s.mode[c] != OPEN:
             continue
-        size = size_of(s.rows, i, s.rate[i], s.v) + s.h * size_of(s.rows, i, s.bias[i], s.a_free)
+        size = size_of(s.rows, i, s.bias[i], s.a_free) + size_of_loads(s, i)
+        size = size_of(s.rows, i, s.rate[i], s.v) + s.h * size
         if s.mode[c] == OPEN:
             s.height[c] = s.height[c] if s.carried[c] == 1 else 0.0
             s.band[g] = max(s.band[g], NOISE * max(s.h * size, s.atol))

@@ -157,12 +157,12 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
         find_standing(s)
         code = decide(s)
         waits = code == DONE and undecided(s)
+        hold_modes(s.rows)  # the old ones, for what is stepped further, and the rest of the step
         # Another mode, or its load left to others that hold it too
         changes = s.new_mode[c] != s.mode[c] or s.new_loaded[c] != s.loaded[c]
         if code != DONE or ahead >= h or (changes and not waits):
             break
         ahead *= FURTHER
-    hold_modes(s.rows)  # the old ones, for the rest of the step
     return code
 
 
