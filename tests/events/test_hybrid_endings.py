@@ -19,6 +19,7 @@ from lcpstep import (
 )
 from lcpstep.model import UncompiledCallback
 from tests.events.ramps import minus_one, moving_ramp, one, position
+from tests.marks import compiled_only
 
 METHOD = EventDriven()
 
@@ -166,6 +167,7 @@ def test_a_guard_that_goes_wrong_is_not_taken_for_one_that_stays_away(below):
 SEEN = []
 
 
+@compiled_only
 def test_functions_that_cannot_be_compiled_run_in_plain_python_with_a_notice():
     def remembered(t, x, p, out):
         SEEN.append(t)

@@ -21,6 +21,7 @@ from benchmarks.judge.runs import Clock, run
 from benchmarks.judge.shrink import shrunk
 from benchmarks.judge.variants import VARIANTS, Variant, fits, rest
 from benchmarks.judge.vary import base, same, varied
+from tests.marks import compiled_only
 
 BALL = Description(
     M=((2.0,),), q0=(1.0,), v0=(0.3,), t_span=(0.0, 1.5), h=0.01, G=((1.0,),), offset=(0.0,), restitution=0.5,
@@ -195,6 +196,7 @@ def test_a_run_without_end_is_reported_and_the_rest_goes_on():
     assert "| hang | event-driven | 1 | ball 1 |" in report(tally)
 
 
+@compiled_only
 def test_a_run_that_does_not_come_on_is_an_anomaly(monkeypatch):
     monkeypatch.setattr(Clock, "limit", 1e-3)
     monkeypatch.setattr(runs, "CPU_EACH", 0.0)
