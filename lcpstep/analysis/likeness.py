@@ -103,8 +103,8 @@ def likeness(a: Sample, b: Sample, seed: int = 0) -> dict[str, Likeness]:
     edges = np.linspace(np.min(speeds), np.max(speeds), BINS + 1)
     circle = np.linspace(0.0, 1.0, BINS + 1)
     histograms = {
-        "phase": ([np.histogram(x, circle)[0] for x in s.phase] for s in (a, b)),
-        "velocity": ([np.histogram(x, edges)[0] for x in s.before] for s in (a, b)),
+        "phase": ([_counts(x, circle) for x in s.phase] for s in (a, b)),
+        "velocity": ([_counts(x, edges) for x in s.before] for s in (a, b)),
     }
     result = {}
     for name, (one, other) in ((name, tuple(map(np.array, pair))) for name, pair in histograms.items()):
@@ -117,6 +117,11 @@ def likeness(a: Sample, b: Sample, seed: int = 0) -> dict[str, Likeness]:
         *rates, lambda u, v: abs(float(np.mean(u)) - float(np.mean(v))), seed
     )
     return result
+
+
+def _counts(values: Array, edges: Array) -> Array:
+    """How many lie between neighbouring edges."""
+    return np.histogram(values, edges)[0].astype(float)
 
 
 def _distribution(blocks: Array) -> Array:

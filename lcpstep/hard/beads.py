@@ -138,7 +138,7 @@ def cradle_apart(solve: Solver) -> float:
 def collapse(solve: Solver) -> Found:
     scene = scenes.inelastic_collapse()
     run = solve(scene)
-    momentum = float(np.sum(run.v[-1]) - np.sum(scene.v0))
+    momentum = float(np.sum(run.v[-1]) - np.sum(np.asarray(scene.v0)))
     spread = float(np.ptp(run.v[-1]))
     return Found(max(abs(momentum), spread), f"{len(run.impacts)} events")
 

@@ -135,7 +135,8 @@ def jump_times(source: Source, a: Array, b: Array, least: float = 0.0) -> tuple[
     first, last = first[np.arange(len(a)), row], last[np.arange(len(a)), row]
     whole, size = np.abs(last - first), np.maximum(np.abs(first), np.abs(last))
     jumps = whole > JUMP * np.maximum(size, least)
-    a, b, row, first, last, whole = (x[jumps] for x in (a, b, row, first, last, whole))
+    row = row[jumps]
+    a, b, first, last, whole = (x[jumps] for x in (a, b, first, last, whole))
     start, end, between = first, last, np.ones(len(a), dtype=bool)
     for _ in range(HALVINGS if len(a) else 0):
         middle = 0.5 * (a + b)
