@@ -42,10 +42,14 @@ DIRECTIVES = {
     "auto_pickle": False,
     "binding": False,
 }
-# Nothing is fused, so that every processor rounds alike
+# Nothing is fused, so that every processor rounds alike; what no header knows is an error before it is linked
 OPTIONS = (
-    ["/O2", "/fp:precise"] if os.name == "nt" else ["-O2", "-g0", "-ffp-contract=off", "-Wno-unused-function"]
-)
+    ["/O2", "/fp:precise"]
+    if os.name == "nt"
+    else [
+        "-O2", "-g0", "-ffp-contract=off", "-Wno-unused-function", "-Werror=implicit-function-declaration",
+    ]
+)  # fmt: skip
 # Packages with loops over rows, which these options make faster; they cost the compiler a fourth more
 WITH_LOOPS = ("lcpstep.lcp.", "lcpstep.kernels.")
 LOOPS = [] if os.name == "nt" else ["-O3"]

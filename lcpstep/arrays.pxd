@@ -1,6 +1,6 @@
 # Declared here and not cimported from numpy, which would bring all of its types into each module: two fifths of the
 # time of translating them
-cdef extern from "numpy/ndarraytypes.h":
+cdef extern from "numpy/ndarrayobject.h":
     ctypedef class numpy.ndarray [object PyArrayObject, check_size ignore]:
         pass
     int NPY_DOUBLE
