@@ -3,9 +3,10 @@
 Runs from many states are followed until they have settled. A motion that comes back after n periods, with m impacts
 on the way, is an O(n, m); where infinitely many impacts (complete chattering) belong to it, that is said in place
 of m. Of a system with modes the m events are its switches. One that does not come back is aperiodic: chaotic if its
-largest Lyapunov exponent is positive beyond its standard error. Where that is negative beyond it, neighbours come
-together, and so to a periodic motion: one that was not waited for long enough, which is said in place of a name. The
-same is said where sampled motions have become periodic meanwhile.
+largest Lyapunov exponent is positive beyond its standard error, and beyond growth in proportion to time. Where it
+is negative beyond its standard error, neighbours come together, and so to a periodic motion: one that was not waited
+for long enough, which is said in place of a name. The same is said where sampled motions have become periodic
+meanwhile.
 Source: G. Osorio, Complex Behavior in Impacting Systems, section 3.2.3.
 """
 

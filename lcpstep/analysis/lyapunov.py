@@ -2,8 +2,10 @@
 
     lambda = lim 1/n sum log |DP(x_k) e_{k-1}|,    e_k = DP(x_k) e_{k-1} / |DP(x_k) e_{k-1}|
 
-The standard error is that of means over blocks. For a scene's `PeriodMap` the derivative is made of saltation
-matrices; divide by the period for exponents per second. Source: G. Benettin et al., Meccanica 15 (1980).
+The standard error is that of means over blocks. Along neutral motions (elastic or without friction) deviations grow
+in proportion to time: log(n)/n in n iterations, alike in each of many runs, so that no scatter tells it. For a
+scene's `PeriodMap` the derivative is made of saltation matrices; divide by the period for exponents per second.
+Source: G. Benettin et al., Meccanica 15 (1980).
 """
 
 from __future__ import annotations
@@ -23,6 +25,9 @@ from lcpstep.pace import FIRST, Pace
 
 Array = NDArray[np.float64]
 NOTHING = 1e-9  # an exponent per iteration that the digits of derivatives do not tell from zero
+SQUARE = (
+    2.0  # power of time up to which growth is that of a neutral motion: with the first what turns a deviation
+)
 RARE = 0.01  # landings per iteration, below which the growth between them is told
 BLOCKS = 20  # for the standard error
 ALIGNING = 500  # iterations, at most, in which the deviation turns to where it grows most
@@ -37,13 +42,14 @@ class Lyapunov:
 
     A landing on an obstacle (the contact closes for good) wipes out all deviations of one degree of freedom. Where
     this is rare, `largest` is the growth between landings, of which there were `landings`. Not-a-number where it is
-    not known, for the `reason` given.
+    not known, for the `reason` given. `neutral` is what deviations would show that grow like the square of time.
     """
 
     largest: float
     error: float
     landings: int = 0
     reason: str = ""
+    neutral: float = 0.0
 
     @property
     def least(self) -> float:
@@ -52,8 +58,8 @@ class Lyapunov:
 
     @property
     def chaotic(self) -> bool:
-        """Whether it is positive by more than three standard errors."""
-        return self.largest > self.least
+        """Whether it is positive by more than three standard errors, and no growth of neutral motions."""
+        return self.largest > max(self.least, self.neutral)
 
 
 def growth_of_runs(derivatives: Array, drop: int = 20) -> Lyapunov:
@@ -67,9 +73,16 @@ def growth_of_runs(derivatives: Array, drop: int = 20) -> Lyapunov:
         lost = length == 0.0
         growth[:, k] = np.where(lost, math.nan, np.log(np.where(lost, 1.0, length)))
         directions = np.where(lost[:, None], np.eye(d)[0], directions / np.where(lost, 1.0, length)[:, None])
-    growth = growth[:, min(drop, n - 1) :]
+    drop = min(drop, n - 1)
+    growth = growth[:, drop:]
     found = mean_growth(growth.T.ravel())  # in the order of time: runs may have come together
-    return found if m == 1 else replace(found, error=max(found.error, mean_growth(growth.ravel(), m).error))
+    error = found.error if m == 1 else max(found.error, mean_growth(growth.ravel(), m).error)
+    return replace(found, error=error, neutral=neutral_growth(drop, n))
+
+
+def neutral_growth(first: int, last: int) -> float:
+    """What a deviation like the square of time would grow by, per iteration, between two of its iterations."""
+    return SQUARE * math.log(last / max(first, 1)) / (last - first)
 
 
 def mean_growth(growth: Array, blocks: int = BLOCKS) -> Lyapunov:
@@ -80,10 +93,10 @@ def mean_growth(growth: Array, blocks: int = BLOCKS) -> Lyapunov:
 
 
 class Growth:
-    """The growth in n iterations, summed over pieces of them, so that none need be kept."""
+    """The growth in n iterations, after `aligned` ones, summed over pieces of them, so that none need be kept."""
 
-    def __init__(self, n: int) -> None:
-        self.n, self.done, self.landings = n, 0, 0
+    def __init__(self, n: int, aligned: int = 0) -> None:
+        self.n, self.aligned, self.done, self.landings = n, aligned, 0, 0
         self.total, self.count = np.zeros(min(n, PIECES)), np.zeros(min(n, PIECES), dtype=np.int64)
 
     def add(self, growth: Array) -> None:
@@ -103,7 +116,8 @@ class Growth:
         parts = np.array_split(np.arange(len(count)), min(blocks, len(count)))
         means = [np.sum(total[part]) / np.sum(count[part]) for part in parts]
         error = float(np.std(means, ddof=1) / math.sqrt(len(means))) if len(means) > 1 else math.inf
-        return Lyapunov(float(np.sum(total) / np.sum(count)), error, self.landings)
+        neutral = neutral_growth(self.aligned, self.aligned + self.done)
+        return Lyapunov(float(np.sum(total) / np.sum(count)), error, self.landings, neutral=neutral)
 
 
 def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0, *, progress: Progress | None = None) -> Lyapunov:
@@ -124,9 +138,9 @@ def lyapunov(P: Map, x: ArrayLike, n: int, drop: int = 0, *, progress: Progress 
     checks.function("P", P, "a state, a map")
     state = np.array(checks.vector("x", x))
     n, drop = checks.count("n", n), int(checks.number("drop", drop, least=0))
-    growth, direction, pace = Growth(n), np.eye(len(state))[0], Pace(PORTION, FIRST, n)
+    growth, direction, pace = Growth(n, min(drop, ALIGNING)), np.eye(len(state))[0], Pace(PORTION, FIRST, n)
     if drop > 0:
-        images, derivatives = along(P, state, min(drop, ALIGNING), max(drop - ALIGNING, 0))
+        images, derivatives = along(P, state, growth.aligned, drop - growth.aligned)
         growth_along(derivatives, direction)
         state = images[-1]
     while growth.done < n:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lagrangian import LinearContacts, LinearSystem, Scene
 from lagrangian.scenes import cam_follower
 from lcpstep import EventDriven, Moreau
 from lcpstep.analysis.attractors import attractors
@@ -143,6 +144,48 @@ def test_exponents_of_many_runs_are_those_of_products():
     assert growth_of_runs(growing).error > 1e-3  # runs that have come together are one
     derivatives[:, 30:32] = 0.0
     assert growth_of_runs(derivatives).largest == -np.inf
+
+
+@pytest.mark.parametrize("shear", [1e-3, 0.01, 0.1, 1.0, 100.0])
+@pytest.mark.parametrize("n", [60, 250, 2000])
+def test_many_runs_of_a_shear_are_not_chaotic(n, shear):
+    """Its k-th power is (1, k shear; 0, 1), so its exponent is zero."""
+    turned = np.array([[0.6, -0.8], [0.8, 0.6]])
+    sheared = np.tile(turned @ [[1.0, shear], [0.0, 1.0]] @ turned.T, (32, n, 1, 1))
+    assert not growth_of_runs(sheared).chaotic
+
+
+@pytest.mark.parametrize(
+    ("P", "slope", "exponent"),
+    [
+        (lambda x: 4.0 * x * (1.0 - x), lambda x: 4.0 - 8.0 * x, np.log(2.0)),
+        (
+            lambda x: np.where(x < 0.3, x / 0.3, (1.0 - x) / 0.7),
+            lambda x: np.where(x < 0.3, 1.0 / 0.3, -1.0 / 0.7),
+            -0.3 * np.log(0.3) - 0.7 * np.log(0.7),
+        ),
+    ],
+    ids=["logistic", "tent"],
+)
+def test_many_runs_of_chaotic_maps_are(P, slope, exponent):
+    x, slopes = np.random.default_rng(1).uniform(size=32), []
+    for _ in range(250):
+        slopes.append(slope(x))
+        x = P(x)
+    found = growth_of_runs(np.transpose(slopes)[:, :, None, None])
+    assert found.largest == pytest.approx(exponent, abs=4.0 * found.error)
+    assert found.chaotic
+
+
+@pytest.mark.parametrize("period", [1.0, 0.1])
+@pytest.mark.parametrize("stiffness", [0.0, 1.0], ids=["ball", "oscillator"])
+def test_motions_that_lose_no_energy_to_an_unmoved_floor_are_aperiodic(stiffness, period):
+    scene = Scene(
+        LinearSystem(M=1.0, K=stiffness, force=-9.81), q0=1.0, v0=0.0, t_span=(0.0, 1.0), period=period,
+        contacts=LinearContacts(1.0, restitution=1.0),
+    )  # fmt: skip
+    motions = attractors(scene, EventDriven(), [[0.5, 0.1], [0.9, 0.0]], transient=50)
+    assert {a.name for a in motions.found} == {"aperiodic"}
 
 
 def test_mean_impacts_come_to_those_of_the_orbit_as_the_step_goes_down():
