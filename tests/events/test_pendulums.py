@@ -9,8 +9,19 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from lagrangian import Contacts, Joints, LinearContacts, LinearJoints, LinearSystem, Scene, System, scenes
+from lagrangian import (
+    Contacts,
+    Coulomb,
+    Joints,
+    LinearContacts,
+    LinearJoints,
+    LinearSystem,
+    Scene,
+    System,
+    scenes,
+)
 from lcpstep import EventDriven, Status, simulate
+from tests.events.rough import rod, rod_row
 from tests.models import GRAVITY
 
 double_pendulum = importlib.import_module("lagrangian.scenes.double_pendulum")
@@ -18,6 +29,50 @@ pendulums = importlib.import_module("lagrangian.scenes.pendulum")
 
 
 # --- rods
+
+
+def above_a_floor(angle, height, t_end, restitution=0.5, friction=None):
+    """A point on a rod of length 1, let go at an angle; the floor is `height` above its lowest place."""
+    return Scene(
+        LinearSystem(np.eye(2), force=[0.0, -GRAVITY]), q0=[math.sin(angle), -math.cos(angle)], v0=[0.0, 0.0],
+        t_span=(0.0, t_end), joints=Joints(1, rod, rod_row),
+        contacts=LinearContacts([[0.0, 1.0]], 1.0 - height, restitution, friction=friction),
+    )  # fmt: skip
+
+
+def swung(angle, until, **settings):
+    """The angle and its speed of a free pendulum, by its equation in the angle."""
+    return solve_ivp(
+        lambda t, x: [x[1], -GRAVITY * math.sin(x[0])], (0.0, until), [angle, 0.0], method="DOP853", rtol=1e-13,
+        atol=1e-13, **settings,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("law", [None, "moreau", "newton", "stronge"])
+@pytest.mark.parametrize("angle", [0.01, 0.1, 0.5, 1.0, -1.3, 2.0, 2.5])
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8, 1e-10, 1e-11, 1e-12])
+def test_a_point_that_a_rod_leads_along_the_floor_swings_freely(tolerance, angle, law):
+    friction = None if law is None else Coulomb(0.3, [[1.0, 0.0]], law=law)
+    m = simulate(above_a_floor(angle, 0.0, 3.0, friction=friction), EventDriven(tolerance, tolerance))
+    assert m.status is Status.DONE
+    assert len(m.impacts) == 0
+    (phi, _) = swung(angle, 3.0).y[:, -1]
+    np.testing.assert_allclose(m.q[-1], [math.sin(phi), -math.cos(phi)], rtol=0, atol=tolerance + 1e-10)
+
+
+@pytest.mark.parametrize("height", [1e-3, 1e-5, 1e-7, 1e-9, 1e-11])
+def test_a_floor_above_the_lowest_place_of_a_rod_turns_it_back(height):
+    """Elastically: at twice the time of the impact it is where it began."""
+    lowest = 2.0 * math.asin(math.sqrt(0.5 * height))
+
+    def meets(t, x):
+        return x[0] - lowest
+
+    meets.terminal = True
+    hit = swung(1.0, 3.0, events=meets).t[-1]
+    m = simulate(above_a_floor(1.0, height, 2.0 * hit, restitution=1.0), EventDriven())
+    assert m.impacts.time == pytest.approx([hit], abs=1e-10)
+    np.testing.assert_allclose(m.q[-1], m.q[0], rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("r", [0.0, 0.5, 1.0])

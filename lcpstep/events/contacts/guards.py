@@ -20,6 +20,7 @@ from lcpstep.events.hybrid.roots import DEGREE, NONE, SAMPLES, convert, first_ri
 from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
 from lcpstep.events.rows.equations import renew_rates, size_of
 from lcpstep.events.rows.held import is_held
+from lcpstep.events.rows.on_joints import is_led
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.dop853 import STAGES
 from lcpstep.kernels.vectors import copy, largest, product
@@ -89,7 +90,7 @@ def begin_guards(s: Rubbing, t: float) -> bool:
         k, i = GUARDS * c, s.n_j + c
         if s.mode[c] == OPEN:
             noise = s.rows.rounding_of_gap(c) + share * no_gap(s, c, s.rise[c], s.bend[c])
-            s.band[k] = max(noise, -2.0 * s.value[k])  # deeper than it is now
+            s.band[k] = max(noise + depth(s, c), -2.0 * s.value[k])  # deeper than it is now
         else:
             own = s.W[i * s.n_r + i]  # none in the middle of a bowl
             none = NOISE * share * speed_tolerance(s.rows, i) / own if own > 0.0 else 0.0
@@ -107,6 +108,14 @@ def no_gap(s: Rubbing, c: int, u: float, alpha: float) -> float:
     """The gap of contact c that is none where all its terms vanish: little beside a hop that begins."""
     least = NOISE * gap_tolerance(s.rows, c)
     return min(least, LOW * u * u / -alpha) if u > 0.0 and alpha < 0.0 else least
+
+
+def depth(s: Rubbing, c: int) -> float:
+    """Twice how deep contact c goes, past which joints lead with a speed that counts for none (`parting.pass_by`)."""
+    u, alpha = s.rise[c], s.bend[c]
+    if not (u < 0.0 and alpha > 0.0 and -u <= s.terms[c] and is_led(s.rows, c)):
+        return 0.0
+    return min(u * u / alpha, 2.0 * gap_tolerance(s.rows, c))
 
 
 def first_event(s: Rubbing, h: float) -> int:

@@ -13,7 +13,7 @@ import cython
 
 from lcpstep.events.codes import ACCUMULATION, IMPACT, JAM, JUMP, LEANS, NO_IMPULSES, OPEN, SLIDES, STICKS
 from lcpstep.events.contacts.equations import measure, renew_friction
-from lcpstep.events.contacts.parting import approaches, let_go, rejoin
+from lcpstep.events.contacts.parting import approaches, let_go, pass_by, rejoin
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import measure_velocities, sliding, still, stop_rows
 from lcpstep.events.rows.cycle import ROUNDS, fades, look_back, recurs, sum_up
@@ -36,6 +36,7 @@ def jump(s: Rubbing, t: float) -> int:
     most = ROUNDS if s.n_t == 0 else 2 * ROUNDS
     if s.rounds == 0:
         s.stalled = s.clock.tally.stalled
+        pass_by(s)
     while s.rounds < most:
         if not approaches(s):
             rejoin(s)

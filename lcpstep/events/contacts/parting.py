@@ -2,6 +2,7 @@
 
 Time goes on between two impacts, if by less than can be told: what has parted passes no impulse on until it strikes
 again. So a plastic contact beside an elastic one, which the forces let go, comes to rest by ever closer impacts.
+What joints lead along a surface parts from it, too, if it but touches it.
 """
 
 from __future__ import annotations
@@ -12,11 +13,14 @@ from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.equations import measure, renew_friction
 from lcpstep.events.contacts.modes import decide
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import hold_modes
-from lcpstep.events.rows.held import constrain
+from lcpstep.events.rows.contacts import accelerate_on_joints, gap_tolerance, hold_modes
+from lcpstep.events.rows.held import constrain, hold_joints
+from lcpstep.events.rows.on_joints import is_led
 from lcpstep.kernels.status import DONE
 from lcpstep.kernels.vectors import copy, product
 from lcpstep.pointers import abs
+
+OFF = 0.1  # of the tolerance of a gap: what steps leave of it, at most
 
 
 def part_before(s: Rubbing) -> None:
@@ -28,6 +32,25 @@ def part_before(s: Rubbing) -> None:
         i = s.n_j + c
         rises = s.mode[c] == OPEN and s.touches[c] == 1 and abs(s.velocity[i]) <= s.terms[c]
         s.parting[c] = 1 if rises and product(s.R, s.a, i, s.n_q) + s.bias[i] > 0.0 else 0
+
+
+def pass_by(s: Rubbing) -> None:
+    """Let pass what joints lead along a surface that it touches by no more than errors of its gap.
+
+    It goes u^2 / (2 alpha) deep. Its speed u counts for none: an impulse that ends it would turn back all of the
+    motion, and where nothing of the normal is left there is none.
+    """
+    for c in range(s.n_c if s.n_j > 0 else 0):
+        i, u = s.n_j + c, s.velocity[s.n_j + c]
+        if s.mode[c] != OPEN or s.touches[c] == 0 or u >= -s.terms[c]:
+            continue
+        hold_joints(s.rows)
+        if not is_led(s.rows, c):
+            continue
+        accelerate_on_joints(s.rows)
+        alpha = product(s.R, s.a, i, s.n_q) + s.bias[i]
+        if alpha > 0.0 and u * u <= 2.0 * alpha * OFF * gap_tolerance(s.rows, c):
+            s.terms[c], s.parting[c] = -u, 1
 
 
 def let_go(s: Rubbing, t: float) -> bool:

@@ -21,6 +21,8 @@ from lcpstep.pointers import Doubles, abs, after
 
 # Of a row's mobility: what is left of one that is a joint's own; more where rows turn
 SAME, DEPENDENT = 1e-22, 1e-12
+# The same of what joints lead along a surface
+LED = 1e-4
 # Of the terms of an acceleration: what a row that has nothing left may show of one; more where steps bring velocities
 # that are off the joints, and rows turn
 TOLD, TURNED = 1e-9, 1e-6
@@ -83,6 +85,12 @@ def can_bear(s: Rows, c: int) -> bool:
     """Whether the joints leave anything of contact c's normal."""
     i = s.n_j + c
     return s.D_on[i * s.n_r + i] > 0.0
+
+
+def is_led(s: Rows, c: int) -> bool:
+    """Whether the joints, once held, leave so little of contact c's normal that they lead along its surface."""
+    i = s.n_j + c
+    return s.n_j > 0 and s.D_on[i * s.n_r + i] <= LED * s.D[i * s.n_r + i]
 
 
 def acceleration_on_joints(s: Rows, i: int, a: Doubles) -> float:
