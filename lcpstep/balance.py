@@ -63,9 +63,14 @@ def _words(gained: float, turned_over: float) -> str:
 def _sudden(run: Trajectory) -> Any:
     """Of many kept states those after which velocities change most by forces, as where these have no bound."""
     change = np.max(np.abs(np.diff(run.v, axis=0)), axis=1)
-    struck = np.searchsorted(run.t, run.impacts.time) - 1
-    change[struck[struck >= 0]] = 0.0
+    change[_struck(run)] = 0.0
     return np.sort(np.argpartition(change, -SUDDEN)[-SUDDEN:])
+
+
+def _struck(run: Trajectory) -> Any:
+    """Kept states between which and the next one an event lies; states asked for may end before the events."""
+    k = np.unique(np.searchsorted(run.t, run.impacts.time)) - 1
+    return k[(k >= 0) & (k < len(run.t) - 1)]
 
 
 def _surplus(run: Trajectory, m: Model, h: float, k: Any, times: float) -> tuple[float, float]:
@@ -81,8 +86,7 @@ def _gain_at_impacts(run: Trajectory, m: Model, h: float) -> tuple[float, float]
         return 0.0, 0.0
     if len(run.impacts) == 0:
         return 0.0, 0.0
-    k = np.unique(np.searchsorted(run.t, run.impacts.time)) - 1
-    k = k[k >= 0]
+    k = _struck(run)
     k = k[run.t[k + 1] - run.t[k] < (1.0 + NEAR) * h]
     speed = np.sum(run.v[k + 1] ** 2, axis=1) - np.sum(run.v[k] ** 2, axis=1)
     gained, work, kinetic = _between(run, m, h, k[np.argsort(speed)[-SUDDEN:]], True)

@@ -19,7 +19,7 @@ LEAST, CRAWL = 1e-6, 0.1
 class Standstill:
     """Looks at a run now and then.
 
-    crawls   whether steps are so short that it is worth asking why
+    crawls   whether this look has shown steps so short that it is worth asking why
     words    how short they are
 
     Parameters
@@ -38,6 +38,7 @@ class Standstill:
         """
         onward, taken = now - self.since, steps - self.steps
         if taken < STEPS and onward < CRAWL * self.way:
+            self.crawls = False  # nothing new: what asks why is slow, and was asked
             return False
         self.crawls = onward < CRAWL * self.way and taken - PER_IMPACT * impacts(self.since) >= STEPS
         self.words = f"{taken} steps or events have taken the time on by {onward:.3g} s only"

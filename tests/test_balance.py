@@ -196,3 +196,14 @@ def test_a_wall_before_a_centre_of_attraction_is_told(wall, method, told):
     E = 0.5 * m.v[:, 0] ** 2 - 1.0 / m.q[:, 0]
     assert m.status is Status.DONE
     assert (np.max(np.abs(E + 1.0)) > 100.0, "energy that no force accounts for" in m.doubt) == (told, told)
+
+
+@pytest.mark.parametrize("times", [[0.3], np.linspace(0.0, 0.5, 50)], ids=["few", "many"])
+def test_states_asked_for_that_end_before_the_impacts_do(times):
+    """Was an IndexError."""
+    wall = LinearContacts([[-1.0]], 0.6, restitution=0.5)
+    scene = Scene(LinearSystem(1.0, K=1.0), 0.0, 1.0, (0.0, 2.0), contacts=wall)
+    for h in (1e-2, times[1] - times[0] if len(times) > 1 else 0.3):
+        m = simulate(scene, Located(h, 4), keep=times)
+        assert m.impacts.time[0] > times[-1]
+        assert (m.status, m.doubt) == (Status.DONE, "")

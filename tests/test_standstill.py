@@ -111,6 +111,16 @@ def test_impacts_may_be_as_many_as_they_like():
         assert look.reached(2 * STEPS, 0.5 + 0.5 * LEAST, lambda since, n=impacts: n) is stands
 
 
+def test_why_a_run_crawls_is_asked_once_in_many_steps():
+    """It was asked at every look from then on; portions, a tenth of a second each, came down to one step."""
+    look = Standstill((0.0, 1.0), math.inf)
+    asked = 0
+    for steps in range(0, 10 * STEPS, 100):
+        assert not look.reached(steps, 1e-3 * steps / STEPS, lambda since: 0)
+        asked += look.crawls
+    assert asked == 9
+
+
 def test_steps_of_the_size_asked_for_are_no_standstill():
     look, h = Standstill((0.0, 1.0), 1e-15), 1e-15
     assert not any(look.reached(k, k * h, lambda since: 0) for k in range(0, 10 * STEPS, 1000))
