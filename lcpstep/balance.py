@@ -41,10 +41,8 @@ def unbalanced(run: Trajectory, m: Model, h: float) -> str:
     steps = np.arange(len(run.t) - 1)
     if len(steps) > LOOKS:
         times = len(steps) / LOOKS
-        some = (np.arange(LOOKS) * times).astype(int)
-        if not _words(*_surplus(run, m, h, some, times)) and not _words(
-            *_surplus(run, m, h, _sudden(run), 1.0)
-        ):
+        some = _surplus(run, m, h, (np.arange(LOOKS) * times).astype(int), times)
+        if not (_words(*some) or _words(*_surplus(run, m, h, _sudden(run), 1.0))):
             return _words(*_gain_at_impacts(run, m, h))
     # What some steps give and others take is no loss
     return _words(*_surplus(run, m, h, steps, 1.0)) or _words(*_gain_at_impacts(run, m, h))
