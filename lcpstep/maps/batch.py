@@ -264,8 +264,8 @@ def _record(task: Task, i: int, k: int, run: Any, j: int, start: Array) -> None:
     log = np.asarray(run.impacts)
     if len(log) == 0:
         return
-    begins = run.t[j - 1] if j else -math.inf
-    log = log[(log["time"] > begins) & (log["time"] <= run.t[j])]
+    first, end = np.searchsorted(log["time"], [run.t[j - 1] if j else -math.inf, run.t[j]], side="right")
+    log = log[first:end]
     time = np.minimum(log["time"] - j * (task.t_end - task.t_start), task.t_end)
     # A contact closed at the section is no impact, and no landing
     later, least = time > task.t_start, ROUNDING * max(1.0, float(np.max(np.abs(start))))
