@@ -12,8 +12,11 @@ import os
 import platform
 import shlex
 import shutil
+import subprocess
 import sys
 import sysconfig
+from collections import defaultdict
+from collections.abc import Iterable
 from pathlib import Path
 
 import Cython
@@ -57,6 +60,13 @@ MACROS = [
     ("NPY_NO_DEPRECATED_API", "NPY_2_0_API_VERSION"),
     ("CYTHON_CLINE_IN_TRACEBACK", "0"),  # lines of C, which nobody reads: a tenth of the compiler's time
 ]
+# What Cython begins with
+HEADERS = (
+    "#define PY_SSIZE_T_CLEAN",
+    "#include <Python.h>",
+    "#include <numpy/ndarrayobject.h>",
+)
+MANY = 8  # modules for which to read these once is worth it
 ROWS = ["-fno-trapping-math"]  # numbers that a choice does not take may be formed: nobody asks for traps
 NO_COMPILER = (
     "lcpstep needs a C compiler to be built: install gcc or clang, or PyPI's ziglang (pip install ziglang)"
@@ -108,6 +118,30 @@ class Build(build_ext):
             if str(name) not in names:
                 for file in (note, HERE / name, Path(self.build_lib) / name):
                     file.unlink(missing_ok=True)
+
+    def build_extensions(self) -> None:
+        """Compile; by gcc with Python's and NumPy's headers read once, which takes a tenth less."""
+        alike = defaultdict(list)  # what is compiled with other options asks for headers of its own
+        for ext in self.extensions:
+            if ext.define_macros == MACROS and not is_built(ext):
+                alike[tuple(ext.extra_compile_args)].append(ext)
+        compiler = self.compiler.compiler_so if os.name == "posix" else []
+        for number, (options, extensions) in enumerate(alike.items()):
+            if len(extensions) >= MANY and is_gcc(compiler[0]):
+                header = self.read_headers(Path(self.build_temp) / f"headers{number}.h", options)
+                for ext in extensions:
+                    ext.extra_compile_args = ["-include", str(header), *options]
+        super().build_extensions()
+
+    def read_headers(self, file: Path, options: Iterable[str]) -> Path:
+        """Have the compiler keep what it reads in these headers, for the modules that include this file first."""
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("\n".join([*HEADERS, ""]))
+        folders = [f"-I{folder}" for folder in (np.get_include(), *self.compiler.include_dirs)]
+        macros = [f"-D{name}={value}" for name, value in MACROS]
+        how = [*self.compiler.compiler_so, *macros, *folders, *options]
+        self.spawn([*how, "-x", "c-header", str(file), "-o", f"{file}.gch"])
+        return file
 
     def build_extension(self, ext: Extension) -> None:
         """Compile one module, or copy it where it lies built."""
@@ -185,6 +219,12 @@ def has_compiler() -> bool:
             return False
         os.environ["CC"] = other
     return True
+
+
+def is_gcc(compiler: str) -> bool:
+    """Whether a command is that compiler."""
+    said = subprocess.run([compiler, "--version"], capture_output=True, text=True, check=False)
+    return "Free Software Foundation" in said.stdout
 
 
 def extension(name: str) -> Module:

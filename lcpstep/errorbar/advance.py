@@ -25,7 +25,8 @@ from lcpstep.kernels.status import BUFFER_FULL, DONE, STEP_TOO_SMALL
 from lcpstep.pointers import inf, max, min
 from lcpstep.trajectory import Kind
 
-IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in list(Kind)[:4])
+IMPACT, ACCUMULATION = int(Kind.IMPACT), int(Kind.ACCUMULATION)
+STICK, RELEASE = int(Kind.STICK), int(Kind.RELEASE)
 DEGREE, SHORT = 16, 0.5  # of the series, and the phase up to which it is taken
 BEGIN = 1e-3  # phase of a flight without a velocity, after which its gap is looked at first
 LOW, SOON = 1e-14, 1e-5  # height of a hop [size], and phase of all that follow: then these are summed up
@@ -52,9 +53,9 @@ class Advance:
     """
 
     def __init__(self, numbers: dict[str, float], times: Any, states: Any, log: Any) -> None:
-        self.delta, self.w2, self.r, self.push = (numbers[x] for x in ("delta", "w2", "r", "push"))
-        self.F0, self.Fc, self.Fs, self.Omega = (numbers[x] for x in ("F0", "Fc", "Fs", "Omega"))
-        self.X, self.Y, self.t_end, self.size = (numbers[x] for x in ("X", "Y", "t_end", "size"))
+        self.delta, self.w2, self.r, self.push = [numbers[x] for x in ("delta", "w2", "r", "push")]
+        self.F0, self.Fc, self.Fs, self.Omega = [numbers[x] for x in ("F0", "Fc", "Fs", "Omega")]
+        self.X, self.Y, self.t_end, self.size = [numbers[x] for x in ("X", "Y", "t_end", "size")]
         self.t, self.g, self.u = numbers["t"], numbers["g"], numbers["u"]
         self.s0, self.w_d = self.F0 / self.w2, sqrt(self.w2 - self.delta * self.delta)
         self.fast = max(sqrt(self.w2), self.Omega)

@@ -40,7 +40,7 @@ def matched(a: Log, b: Log, contact: int, weak: float, resolution: float) -> tup
     kind (l, 3) of suspects, among which no weak blows are; times of all blows
     """
     blows, others = np.empty((a.n, OF_BLOW)), np.empty((b.n, OF_BLOW))
-    found, begun, pairs, left = (np.empty(n, np.intp) for n in (a.n, a.n + 1, a.n + b.n, a.n + b.n))
+    found, begun, pairs, left = [np.empty(n, np.intp) for n in (a.n, a.n + 1, a.n + b.n, a.n + b.n)]
     own, of_other, row, begin = doubles(blows), doubles(others), indices(found), indices(begun)
     pair, alone = indices(pairs), indices(left)
     n = join(a, contact, resolution, own, True, row, begin)

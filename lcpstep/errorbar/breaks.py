@@ -12,7 +12,7 @@ from lcpstep.arrays import doubles
 from lcpstep.gauss import gauss
 from lcpstep.pointers import Doubles
 
-EARLIER, LATER = (float(x) for x in gauss(2)[0])  # nodes in an interval (0, 1)
+EARLIER, LATER = float(gauss(2)[0][0]), float(gauss(2)[0][1])  # nodes in an interval (0, 1)
 NODES = 2
 
 

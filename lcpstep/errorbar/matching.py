@@ -12,7 +12,7 @@ from lcpstep.errorbar.layout import IMPULSE, JUMP, LATE_BY, OF_PAIR, START, STOP
 from lcpstep.pointers import Doubles, Indices, abs, inf, max, min
 from lcpstep.trajectory import Kind
 
-IMPACT, ACCUMULATION = (int(kind) for kind in list(Kind)[:2])
+IMPACT, ACCUMULATION = int(Kind.IMPACT), int(Kind.ACCUMULATION)
 ALIKE = 0.5  # of the larger jump, by which those of partners may differ
 NEAR = 0.5  # of the time to the next impact of the contact
 

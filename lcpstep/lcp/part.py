@@ -36,9 +36,9 @@ class Part:
     def __init__(self, A: SparseRows, G: SparseRows, G_T: SparseRows, block: Any, order: Any) -> None:
         self.n, self.m, self.n_all, self.m_all = 0, 0, A.m, G.m
         self.all_A, self.all_G, self.all_G_T = A, G, G_T
-        self.A, self.G, self.G_T = (
+        self.A, self.G, self.G_T = [
             SparseRows(x.matrix(x.m, A.m if x is not G_T else G.m)) for x in (A, G, G_T)
-        )
+        ]
         n_b = int(block.max(initial=-1)) + 1
         begin = np.concatenate([[0], np.cumsum(np.bincount(block, minlength=n_b))])
         lists = {
