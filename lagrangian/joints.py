@@ -106,10 +106,17 @@ class Joints(Pickled):
         """G as a sparse matrix, from its entries in the order of the pattern."""
         from scipy.sparse import csr_array
 
-        rows, columns = np.asarray(self.pattern)
+        order, columns, begin = self._by_row
         if np.max(columns) >= n_q:
             raise ValueError(f"joints.pattern: expected columns below {n_q}, got {np.max(columns)}")
-        return csr_array((entries, (rows, columns)), shape=(self.n_j, n_q))
+        return csr_array((np.asarray(entries)[order], columns, begin), shape=(self.n_j, n_q))
+
+    @cached_property
+    def _by_row(self) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+        """The entries row by row, their columns, and where each row begins."""
+        rows, columns = np.asarray(self.pattern)
+        order = np.lexsort((columns, rows))
+        return order, columns[order], np.append(0, np.cumsum(np.bincount(rows, minlength=self.n_j)))
 
 
 def _pattern(given: ArrayLike, n_j: int) -> NDArray[np.intp]:

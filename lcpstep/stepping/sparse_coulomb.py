@@ -90,6 +90,8 @@ class Coupled:
         from scipy.sparse import csr_array, vstack
 
         self.n_q, self.n_c, self.n_j = A.shape[0], G.shape[0], J.shape[0]
+        normal, tangent = self.n_j, self.n_j + self.n_c
+        self.joints, self.normals, self.tangents = slice(normal), slice(normal, tangent), slice(tangent, None)
         self.A, self.G, self.T = A, G, T
         self.diagonal, self.row_sums = np.abs(A.diagonal()), abs(A) @ np.ones(self.n_q)
         self.R = csr_array(vstack([J, G, T], format="csr"))
@@ -131,7 +133,8 @@ class Coupled:
         v, none = np.modf(GOLDEN * np.arange(1.0, self.n_q + 1.0))[0] - 0.5, np.zeros(self.n_c, dtype=bool)
         problem = Problem(self.R @ v, self.abs_R @ np.abs(v), none, none, np.zeros(self.n_c), 1.0)
         x = self.settle(problem, np.zeros(self.n_c, dtype=int), np.zeros(self.n_r)).x
-        return np.abs(self.G @ (v + x)) <= CONTRADICTION * (abs(self.G) @ (np.abs(v) + np.abs(x)))
+        terms = (self.abs_R @ (np.abs(v) + np.abs(x)))[self.normals]
+        return np.abs(self.G @ (v + x)) <= CONTRADICTION * terms
 
     def solve(self, problem: Problem, modes: Any, p: Any) -> Point:
         """The answer; modes (n_c,) and impulses p (n_r,): guesses of it."""
@@ -216,8 +219,8 @@ class Coupled:
         same thing twice none then grows against another.
         """
         solve, held, n = self.factor(problem, modes), self.held(problem, modes), self.n_q
-        tangents, slide = slice(self.n_r - self.n_c, None), SIGN[modes] * problem.mu
-        normals, slides = slice(self.n_j, self.n_r - self.n_c), modes > STICK
+        normals, tangents = self.normals, self.tangents
+        slide, slides = SIGN[modes] * problem.mu, modes > STICK
         proximal = 0.0 if centre is None else self.proximal
         u, before = np.append(np.zeros(n), np.where(held, p, 0.0)), np.inf
         u[n:][tangents][slides] = -(slide * u[n:][normals])[slides]
@@ -260,21 +263,19 @@ class Coupled:
 
     def judged(self, problem: Problem, modes: Any, u: Any, size_x: Any, away: Any, defect: float) -> Point:
         """The point with its residuals, and the modes that would fit."""
-        x, p, cuts = u[: self.n_q], u[self.n_q :], (self.n_j, self.n_j + self.n_c)
-        _, p_N, p_T = np.split(p, cuts)
-        away_J, away_N, away_T = np.split(away, cuts)
-        _, share_N, share_T = np.split(self.shares(size_x), cuts)
+        x, p, N, T = u[: self.n_q], u[self.n_q :], self.normals, self.tangents
+        p_N, p_T, away_N, away_T, shares = p[N], p[T], away[N], away[T], self.shares(size_x)
         closed, stick, s = modes != OPEN, (modes == STICK) & problem.rough, SIGN[modes]
-        pulls = np.where(closed, np.maximum(-p_N, 0.0) * share_N, 0.0)
+        pulls = np.where(closed, np.maximum(-p_N, 0.0) * shares[N], 0.0)
         enters = np.where(problem.active & ~closed, np.maximum(-away_N, 0.0), 0.0)
-        beyond = np.where(stick, np.maximum(np.abs(p_T) - problem.mu * p_N, 0.0) * share_T, 0.0)
+        beyond = np.where(stick, np.maximum(np.abs(p_T) - problem.mu * p_N, 0.0) * shares[T], 0.0)
         turned = np.where(s != 0.0, np.maximum(-s * away_T, 0.0), 0.0)
         fitting = np.where(turned > STRICT, STICK, modes)
         fitting = np.where(beyond > STRICT, np.where(p_T < 0.0, FORWARDS, BACKWARDS), fitting)
         fitting = np.where(pulls > STRICT, OPEN, np.where(enters > STRICT, STICK, fitting))
         kinds = pulls, enters, beyond, turned, away_N[closed], away_T[stick]
         residual = max(defect, *map(largest, kinds)) if np.all(np.isfinite(size_x)) else np.inf
-        return Point(modes, x, p, size_x, residual, largest(away_J), fitting)
+        return Point(modes, x, p, size_x, residual, largest(away[self.joints]), fitting)
 
     def shares(self, size_x: Any) -> Any:
         """The largest part that a unit impulse of each row has in an equation of x."""

@@ -91,7 +91,7 @@ class CoupledRun(SparseRun):
             data, J_t = self.joints.at(t_next, q, v)
             if self.joints.turning:
                 step.coupled.turn(data, step.theta * data + (1.0 - step.theta) * J_start)
-            J, before = step.coupled.R[: self.joints.n], v
+            before = v
             known = Before(v_free, self.u, sliding), (J_t, s_t, slip)
             point, status = self.strike(step, Blows(active, slow), *known, modes, p)
             if status != Status.DONE:
@@ -107,10 +107,10 @@ class CoupledRun(SparseRun):
             return v, Status.NEWTON_FAILED
         most = max(np.max(np.abs(v)), speed, np.max(np.abs(self.v)))
         granted = (np.abs(data - J_start).max(initial=0.0) * most) ** 2  # what joints turn by
-        if np.any(missed(np.abs(J @ v + J_t), J, J_t, most) > granted):
+        idle, left = closed & self.of_joints, self.missed(step.coupled, v, J_t, s_t, most)
+        if np.any(left[: self.joints.n] > granted):
             return v, Status.JOINTS_FAILED
-        G, idle = self.equations.G, closed & self.of_joints
-        if np.any(missed(s_t - G @ v, G, s_t, most)[idle] > granted):
+        if np.any(left[self.joints.n :][idle] > granted):
             return v, Status.LCP_FAILED
         problem, strikes = self.problem(step, active, *known, Blows(active, slow))
         rebound = np.any(strikes) * self.tangent_restitution * sliding
@@ -120,6 +120,13 @@ class CoupledRun(SparseRun):
         self.rows_p, self.p = p, np.maximum(p_N, 0.0)
         self.impulse += np.concatenate([self.p, *([p_T] if self.frictional else []), p_J])
         return v, Status.DONE
+
+    def missed(self, coupled: Coupled, v: Array, J_t: Array, s_t: Array, speed: float) -> Array:
+        """By how much joints move, and contacts enter, more than contradictions let rows do at up to this speed."""
+        rates = (coupled.R @ v)[: self.joints.n + len(s_t)] + np.append(J_t, -s_t)
+        rates = np.append(np.abs(rates[: self.joints.n]), -rates[self.joints.n :])
+        terms = (coupled.abs_R @ np.ones(len(v)))[: len(rates)]
+        return rates - CONTRADICTION * (np.append(np.abs(J_t), np.abs(s_t)) + speed * terms)
 
     def bearing(self, step: Any, active: Any, J: Array) -> Any:
         """The active contacts but those whose normals the joints hold: these bear nothing, and have no friction.
@@ -157,9 +164,10 @@ class CoupledRun(SparseRun):
         self, step: Any, active: Any, before: Before, rest: tuple[Array, Array, Array], blows: Blows
     ) -> tuple[Problem, Any]:
         """The problem of a blow; which contacts strike. `rest`: rates of joints, normals and tangents at v = 0."""
-        J, speeds, (J_t, s_t, slip) = step.coupled.R[: self.joints.n], np.abs(before.v), rest
+        joints, speeds, (J_t, s_t, slip) = step.coupled.joints, np.abs(before.v), rest
         rates, sizes, strikes = self.rates(step, before, active, s_t, slip, blows)
-        b, size = np.append(J @ before.v + J_t, rates), np.append(abs(J) @ speeds + np.abs(J_t), sizes)
+        b = np.append((step.coupled.R @ before.v)[joints] + J_t, rates)
+        size = np.append((step.coupled.abs_R @ speeds)[joints] + np.abs(J_t), sizes)
         rough = active & self.stiction.rough
         return Problem(b, size, active, rough, self.stiction.mu, np.max(speeds)), strikes
 
@@ -194,11 +202,6 @@ class CoupledRun(SparseRun):
         if code == Status.NOT_FINITE and self.stiction.kernel.fault():
             return f"{self.stiction.kernel.fault()} {self.where}"
         return super().why(code)
-
-
-def missed(rates: Array, rows: Any, known: Array, speed: float) -> Array:
-    """By how much rates of rows at velocities up to this speed are more than what contradictions leave of them."""
-    return rates - CONTRADICTION * (np.abs(known) + speed * (abs(rows) @ np.ones(rows.shape[1])))
 
 
 def unknown(scene: Scene) -> str:

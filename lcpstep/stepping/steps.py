@@ -33,7 +33,8 @@ MARGIN = 2.0**-49
 
 def largest(*numbers: Any) -> float:
     """The largest of all numbers by its size; 0 of none."""
-    return float(np.abs(np.concatenate([np.ravel(x) for x in numbers])).max(initial=0.0))
+    every = np.concatenate([np.ravel(x) for x in numbers]) if len(numbers) > 1 else numbers[0]
+    return float(np.abs(every).max(initial=0.0))
 
 
 def inverse(A: Any) -> NDArray[np.float64]:
