@@ -119,7 +119,7 @@ PLAIN = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", slow(COMPILED, "solve"))
+@pytest.mark.parametrize("name", slow(COMPILED, longest=("solve",)))
 def test_a_callback_of_any_make_is_compiled(name):
     with warnings.catch_warnings():
         warnings.simplefilter("error", UncompiledCallback)

@@ -44,7 +44,10 @@ SLOW = {  # films, a study, diagrams, basins, and what other tests show as well
     "ex46_chapter_6_border_collisions",
     "ex47_chapter_7_anti_lock_brake",
 }
-LONGEST = "ex26_double_pendulum_film", "ex32_work_precision"
+LONGEST = {  # films, and figures whose numbers `tests/analysis` looks at too
+    "ex06_cam_film", "ex26_double_pendulum_film", "ex32_work_precision", "ex41_chapter_2_flips",
+    "ex43_chapter_4_bifurcation_diagram",
+}  # fmt: skip
 LARGEST = 2_000_000  # of a picture or film [bytes]
 
 

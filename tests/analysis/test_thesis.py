@@ -18,7 +18,7 @@ from tests.marks import shared, slow
 FAST = ("4.4", "7.5")
 
 
-@pytest.mark.parametrize("name", slow(FAST, "7.5"))
+@pytest.mark.parametrize("name", slow(FAST, "4.4", longest=["7.5"]))
 def test_a_figure_comes_as_png_svg_and_data(name, tmp_path, capsys):
     assert main(["thesis", name, "--out", str(tmp_path)]) == DONE
     for kind in ("png", "svg", "json"):

@@ -157,7 +157,10 @@ def _compiled(f):
 
 @pytest.mark.parametrize(
     ("method", "distance"),
-    [(EventDriven(rtol=1e-11, atol=1e-11), 1e-7), (Moreau(h=1e-3), 1e-10)],
+    [
+        pytest.param(EventDriven(rtol=1e-11, atol=1e-11), 1e-7, marks=pytest.mark.slow),
+        (Moreau(h=1e-3), 1e-10),
+    ],
     ids=["events", "moreau"],
 )
 def test_by_hand_and_from_the_lagrangian_the_motion_is_the_same(method, distance):
@@ -192,6 +195,7 @@ def test_bead_on_a_turning_wire_meets_its_stop_at_the_known_instant():
     np.testing.assert_allclose(integral, -0.5 * 0.2 * (2.0 * r0) ** 2, rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_fast_shaking_holds_the_pendulum_upright():
     """Upright is stable for A w > sqrt(2 g l) [Landau, Lifshitz, Mechanics, section 30]."""
     shaken = shaken_pendulum()

@@ -62,7 +62,7 @@ def carried(speed, length):
 
 
 @pytest.mark.parametrize("motion", [bump, bell])
-@pytest.mark.parametrize("width", slow([1e-1, 1e-2, 1e-3, 1e-4], 1e-4, longest=[1e-1, 1e-2]))
+@pytest.mark.parametrize("width", slow([1e-1, 1e-2, 1e-3, 1e-4], 1e-3, longest=[1e-1, 1e-2, 1e-4]))
 def test_no_burr_of_a_table_is_flown_through(motion, width):
     rng = np.random.default_rng(int(1e4 * width))
     for k in range(9):
