@@ -115,8 +115,10 @@ def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iter
     except LcpStepError:
         pass
     order = 4 if scene.n_j == 0 else 2
-    rtol, atol = (max(LEAST_TOLERANCE, min(TIGHT, x * FAR)) for x in (method.rtol, method.atol))
-    measure = Companion(EventDriven(rtol, atol))
+    # As tight as may be, the absolute one tighter: with that which the run has, a companion strikes the same together
+    measure = Companion(
+        EventDriven(max(LEAST_TOLERANCE, min(TIGHT, method.rtol * FAR)), min(TIGHT, method.atol * FAR))
+    )
     for pieces in PIECES:
         looks = Companion(Located(step / pieces, order), measures=False, first=pieces < PIECES[-1])
         yield measure, looks

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.accuracy.reference import find_reference
 from tests.known import KNOWN
@@ -199,3 +199,26 @@ def test_times_about_which_the_bar_of_velocities_says_nothing_are_few_and_told()
     t = t[~np.any((t[:, None] >= out[:, 0]) & (t[:, None] <= out[:, 1]), axis=1)]
     apart = np.max(np.abs(run.at(t)[1] - run.scene.exact(t)[1]))
     assert 0.5 < apart / run.error.velocity.sup < 1.01
+
+
+@pytest.mark.parametrize("atol", [1e-14, 1e-15])
+def test_what_strikes_together_within_a_tight_tolerance_is_part_of_the_bar(atol):
+    """Three rough blocks on each other, on a table that is shaken, whose hops collapse together."""
+    G, T, f = np.zeros((3, 6)), np.zeros((3, 6)), np.zeros(6)
+    f[1::2] = -9.81
+    for i in range(3):
+        G[i, 2 * i + 1] = T[i, 2 * i] = 1.0
+        if i > 0:
+            G[i, 2 * i - 1] = T[i, 2 * i - 2] = -1.0
+    friction = Coulomb([0.5, 0.4, 0.3], T, slip=Harmonic(sine=[-0.6, 0.0, 0.0], omega=12.0))
+    scene = Scene(
+        LinearSystem(np.eye(6), force=f),
+        q0=[0.0, 0.1, 0.0, 0.25, 0.0, 0.3],
+        v0=[0.3, 0.0, 0.0, 0.0, -0.5, 0.0],
+        t_span=(0.0, 2.0),
+        contacts=LinearContacts(G, 0.0, restitution=[0.5, 0.3, 0.2], friction=friction),
+    )
+    run = simulate(scene, EventDriven(1e-13, atol), error=True)
+    t = np.linspace(0.0, 2.0, 30)[1:-1]
+    apart = np.max(np.abs(run.at(t)[0] - simulate(scene, EventDriven(1e-13, 1e-16)).at(t)[0]))
+    assert 1e-12 < apart < 2.0 * run.error.position.sup
