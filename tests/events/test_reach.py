@@ -7,7 +7,7 @@ import pytest
 
 from lagrangian import LinearContacts, LinearSystem, Scene
 from lagrangian.scenes import cam_follower
-from lcpstep import EventDriven, simulate
+from lcpstep import EventDriven, Kind, simulate
 from lcpstep.events.flight.reach import reach
 from lcpstep.model import model
 
@@ -102,3 +102,44 @@ def test_a_table_is_looked_at_again_when_its_height_has_changed(plain, monkeypat
     assert t < low.time - 0.01
     assert 0.1 + 3.0 * t - 5.0 * t**2 == pytest.approx(0.2 * (1.0 - np.cos(2.0 * np.pi * t)), abs=1e-12)
     assert np.array_equal(high.t, simulate(above(raised), EventDriven()).t)
+
+
+def to_and_fro(t, q, v, p, out):
+    """A table, or a frame, that rises for half a period with 0.4 m/s, and falls for the other."""
+    since = t - 0.3 * np.floor(t / 0.3)
+    rises = since < 0.15
+    out[0, 0] = 0.4 * (since if rises else 0.3 - since)
+    out[0, 1] = 0.4 if rises else -0.4
+    out[0, 2] = 0.0
+
+
+def strikes(height, restitution, t_end):
+    """Times at which a ball meets that table: roots of a quadratic in every half of a period."""
+    found, t, x, v, half = [], 0.0, height, 0.0, -1
+    while t < t_end:
+        half += 1
+        end, w = min(0.15 * (half + 1), t_end), 0.4 if half % 2 == 0 else -0.4
+        while t < end:
+            g, u = x - (0.06 * (half % 2) + w * (t - 0.15 * half)), v - w
+            meets = t + (u + np.sqrt(u * u + 2.0 * 9.81 * max(g, 0.0))) / 9.81
+            step = min(meets, end) - t
+            t, x, v = min(meets, end), x + v * step - 0.5 * 9.81 * step**2, v - 9.81 * step
+            if t == meets:
+                found.append(t)
+                v = w - restitution * (v - w)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("moved", ["table", "frame"])
+@pytest.mark.parametrize("corners", [(0.0, 0.15), ()])
+def test_no_leap_from_a_low_hop_crosses_a_corner_at_which_the_table_jumps(corners, moved):
+    """The table falls as the ball leaves it, and rises to meet it: the ball passed through it."""
+    frame, motion, v0 = (to_and_fro, None, -0.4) if moved == "frame" else (None, to_and_fro, 0.0)
+    scene = Scene(
+        LinearSystem(1.0, force=-9.81, frame=frame), 0.5, v0, (0.0, 2.8),
+        LinearContacts(1.0, restitution=0.5, motion=motion), corners=corners, period=0.3,
+    )  # fmt: skip
+    struck = simulate(scene, EventDriven()).impacts
+    wanted = strikes(0.5, 0.5, 2.8)
+    assert 2.7 < wanted[9] < 2.72
+    np.testing.assert_allclose(struck.time[struck.kind == Kind.IMPACT], wanted, rtol=0.0, atol=1e-12)

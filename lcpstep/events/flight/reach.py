@@ -6,7 +6,7 @@ position y is open while
     G y > max over a period of (G c + s) - offset
 
 and its acceleration is G y'' less at most max |G c'' + s''|. Corners split a period into smooth pieces, and every
-piece is looked at, however short.
+piece is looked at, however short. Where the speed jumps up at a corner, no acceleration tells what is reached then.
 """
 
 from __future__ import annotations
@@ -26,6 +26,10 @@ Array = NDArray[np.float64]
 PER_PIECE = 8  # samples between two corners
 AGAIN = 16  # every so many samples, is the motion the same a period later?
 SAME = 1e-9  # relative
+BESIDE, JUMP = (
+    1e-11,
+    1e-9,
+)  # of a corner, relative to time and period, and of the speed there, relative to the largest
 STEEPER, HARDER = 2.0, 1.25  # than in the samples: speeds and accelerations between them
 
 
@@ -61,9 +65,20 @@ def reach(scene: Scene, m: Model, all_seen: Seen | None = None) -> Reach:
     again = np.abs(samples(late) - found[:SAMPLES:AGAIN][: len(late)])
     if not np.all(np.isfinite(size)) or np.any(again[:, :2] > SAME * size[:2]):
         return far
+    before, after = (samples(_beside_corners(scene, side))[:, 1] for side in (-BESIDE, BESIDE))
+    if np.any(after - before > JUMP * size[1]):
+        return far
     spacing = sampled_length(scene) / SAMPLES
     clear = float(np.max(found[:, 0]) + STEEPER * spacing * size[1] - offset)
     return far._replace(clear=clear, bend=float(HARDER * size[2]))
+
+
+def _beside_corners(scene: Scene, side: float) -> Array:
+    """Times beside every corner that the span meets first in a period, by a share of the period."""
+    start = scene.period * math.floor(scene.t_span[0] / scene.period)
+    times = start + np.append(turns(scene).stops, turns(scene).stops + scene.period)
+    met = times[(times > scene.t_span[0]) & (times < scene.t_span[1])]
+    return np.asarray(met + side * np.maximum(scene.period, np.abs(met)))
 
 
 def _between_corners(scene: Scene) -> Array:
