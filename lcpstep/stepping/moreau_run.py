@@ -28,6 +28,7 @@ from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.responses import constant_rows
 from lcpstep.trajectory import Counts, Status
+from lcpstep.turns import turns
 
 if TYPE_CHECKING:
     from lcpstep.stepping.moreau import Moreau
@@ -61,7 +62,7 @@ class MoreauRun(StepRun):
         if self.method.tolerance is not None:
             order, tolerance = 2 if self.method.theta == 0.5 else 1, self.method.tolerance
             span, h = self.scene.t_span, self.method.h
-            clock = Clock(span, self.scene.corners, self.scene.period)
+            clock = Clock(span, turns(self.scene, with_belts=True).stops, self.scene.period)
             self.controlled_by(
                 Attempts(self.loop, lambda h: self.plan_for(h).matrices, clock, span, h, tolerance, order)
             )

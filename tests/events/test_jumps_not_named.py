@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene
-from lcpstep import EventDriven, Located, Status, simulate
+from lcpstep import EventDriven, Located, Moreau, Status, simulate
 
 G, MU, END = 9.81, 0.25, 1.0
 TIMES = [1.0 / 3.0, 0.5123456]
+METHODS = [(EventDriven(1e-10, 1e-10), 1e-9), (Moreau(1e-2, tolerance=1e-5), 1e-7)]  # and how near each comes
 
 
 def moves(t, q, v, p, out):
@@ -47,14 +48,15 @@ def after(speed, belt, rest):
     return way + v * (rest - until), v
 
 
+@pytest.mark.parametrize(("method", "within"), METHODS)
 @pytest.mark.parametrize("time", TIMES)
 @pytest.mark.parametrize(("first", "then"), [(0.6, -0.4), (0.6, 0.0), (0.0, 1.9), (0.3, 0.35)])
-def test_a_belt_that_jumps_lets_slip_what_sticks_to_it(time, first, then):
+def test_a_belt_that_jumps_lets_slip_what_sticks_to_it(time, first, then, method, within):
     belt = LinearContacts([[0.0, 1.0]], restitution=0.5, friction=Coulomb(MU, along, runs))
     block = LinearSystem(np.eye(2), force=[0.0, -G])
     scene = Scene(block, [0.0, 0.0], [first, 0.0], (0.0, END), belt, p=[time, first, then])
     way, v = after(first, then, END - time)
-    ends_at(scene, [first * time + way, 0.0], [v, 0.0])
+    ends_at(scene, [first * time + way, 0.0], [v, 0.0], method, within)
 
 
 @pytest.mark.parametrize("time", TIMES)
@@ -69,10 +71,11 @@ def test_and_turns_the_friction_of_what_slides_on_it(time, then):
     ends_at(scene, [way + more, 0.0], [v, 0.0])
 
 
+@pytest.mark.parametrize(("method", "within"), METHODS)
 @pytest.mark.parametrize("time", TIMES)
 @pytest.mark.parametrize("speed", [0.4, -1.5])
 @pytest.mark.parametrize("kind", ["smooth", "rough", "joint"])
-def test_a_table_takes_along_what_lies_on_it_or_drops_from_under_it(time, speed, kind):
+def test_a_table_takes_along_what_lies_on_it_or_drops_from_under_it(time, speed, kind, method, within):
     friction = Coulomb(MU, [[1.0, 0.0]]) if kind == "rough" else None
     table = LinearContacts([[0.0, 1.0]], restitution=0.5, motion=moves, friction=friction)
     joint = LinearJoints([[1.0, 0.0]]) if kind == "joint" else None
@@ -82,9 +85,9 @@ def test_a_table_takes_along_what_lies_on_it_or_drops_from_under_it(time, speed,
     )  # fmt: skip
     rest = scene.t_span[1] - time
     if speed > 0.0:
-        ends_at(scene, [0.0, speed * rest], [0.0, speed])
+        ends_at(scene, [0.0, speed * rest], [0.0, speed], method, within)
     else:
-        ends_at(scene, [0.0, -0.5 * G * rest**2], [0.0, -G * rest])
+        ends_at(scene, [0.0, -0.5 * G * rest**2], [0.0, -G * rest], method, within)
 
 
 @pytest.mark.parametrize("rough", [False, True])
