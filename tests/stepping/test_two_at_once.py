@@ -80,3 +80,25 @@ def test_a_corner_is_struck_as_one_whatever_the_speeds_of_its_walls(method):
     for seed, scene, end in struck_by_steps():
         run = simulate(scene, method, keep=[0.5])
         np.testing.assert_allclose(run.q, end, rtol=0, atol=1e-3, err_msg=str(seed))
+
+
+def still(t, q, v, p, out):
+    """A table that might move, and does not."""
+    out[:, :] = 0.0
+
+
+@pytest.mark.parametrize(
+    "method", [EventDriven(), Located(1e-2), Located(1e-3), Located(2e-4), Located(1e-3, 4)]
+)
+@pytest.mark.parametrize("masses", [(1.1, 0.7), (0.9, 1.7, 0.4), (0.31, 1.3, 1.9, 0.77)])
+def test_bodies_that_fly_together_land_together(masses, method):
+    """As one ball. What rounding left of their relative speed parted them on top, where their own speeds vanish."""
+    n, r, height = len(masses), 0.9, 0.2
+    contacts = LinearContacts(np.eye(n) - np.eye(n, k=-1), restitution=[r] + [0.6] * (n - 1), motion=still)
+    system = LinearSystem(np.diag(masses), force=-9.81 * np.array(masses))
+    scene = Scene(system, np.full(n, height), np.zeros(n), (0.0, 1.5), contacts)
+    fall = np.sqrt(2.0 * height / 9.81)
+    times = fall * (1.0 + 2.0 * np.cumsum([0.0, r, r**2, r**3, r**4]))
+    run = simulate(scene, method)
+    np.testing.assert_allclose(run.impacts.time[run.impacts.contact == 0], times, rtol=0.0, atol=1e-10)
+    np.testing.assert_allclose(np.diff(run.q, axis=1), 0.0, rtol=0.0, atol=1e-12)

@@ -226,4 +226,6 @@ def land(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
                 force = w.force_now[c]
                 share = force / (force + lost) if force > 0.0 else 0.0
                 release(m, plan, w, c, t + tau * share, u)
+            elif u > 0.0:  # rounding: beside the velocities of a later, slower motion it would be none
+                add(w.v, -u / W[c * w.n_c + c], after(MG, c * w.n_q), w.n_q)
     return True
