@@ -26,10 +26,8 @@ Array = NDArray[np.float64]
 PER_PIECE = 8  # samples between two corners
 AGAIN = 16  # every so many samples, is the motion the same a period later?
 SAME = 1e-9  # relative
-BESIDE, JUMP = (
-    1e-11,
-    1e-9,
-)  # of a corner, relative to time and period, and of the speed there, relative to the largest
+BESIDE = 1e-11  # a corner, relative to time and period
+JUMP = 1e-9  # of the speed there, relative to the largest
 STEEPER, HARDER = 2.0, 1.25  # than in the samples: speeds and accelerations between them
 
 
