@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import Any
 
 import cython
@@ -9,9 +10,10 @@ import numpy as np
 
 from lcpstep.arrays import doubles
 from lcpstep.kernels.acceleration import free_acceleration
+from lcpstep.kernels.dynamics import mass
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import finite, largest
-from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.kernels.vectors import finite, largest, product, size_of_product
+from lcpstep.pointers import Doubles, abs, after, inf, max
 
 
 @cython.ccall
@@ -89,3 +91,52 @@ def is_stiff(m: Model) -> bool:
     for i in range(n):
         found = found or m.C[i] != 0.0 or m.K[i] != 0.0
     return found
+
+
+@cython.ccall
+def sizes(m: Model, t: float, q: Any, v: Any, time: float) -> tuple[float, float, float]:
+    """How far, and how fast, a system is that goes on from q, v (n_q,) for a time; and its largest coordinate.
+
+    In the metric of its masses, sqrt(q M q) and sqrt(v M v), which tells of coordinates in different units, and of
+    those that are zero, as well. All are infinite where nothing is known of the motion: at rest, without forces.
+    """
+    n = m.n_q
+    space = np.zeros(2 * n + 2 * n * n)
+    at, at_rate, work = doubles(q), doubles(v), doubles(space)
+    M = after(work, 2 * n)
+    mass(m, t, at, at_rate, M)
+    fast = in_metric(M, at_rate, n) + time * push(m, t, at, at_rate, M, work)
+    if fast == 0.0:
+        return inf, inf, inf
+    longest = largest(at, 0.0, n) + time * (largest(at_rate, 0.0, n) + time * largest(work, 0.0, n))
+    return in_metric(M, at, n) + time * fast, fast, longest
+
+
+@cython.cfunc
+def in_metric(M: Doubles, x: Doubles, n: int) -> float:
+    """The size sqrt(x M x)."""
+    square = 0.0
+    for i in range(n):
+        square += x[i] * product(M, x, i, n)
+    return sqrt(max(square, 0.0))
+
+
+@cython.cfunc
+def push(m: Model, t: float, q: Doubles, v: Doubles, M: Doubles, work: Doubles) -> float:
+    """The size sqrt(f M^-1 f) of the forces, roughly, whose terms do not cancel; harmonic ones at their largest.
+
+    Accelerations by the same into `work`; all zero where they are not finite.
+    """
+    n, square = m.n_q, 0.0
+    a, f = work, after(work, n)
+    free_acceleration(m, t, q, v, after(M, n * n), f, a)
+    for i in range(n):
+        f[i] = abs(product(M, a, i, n))
+        if m.linear:
+            f[i] += size_of_product(m.K, q, i, n) + size_of_product(m.C, v, i, n)
+            if not m.force.given:
+                f[i] += abs(m.constant[i]) + abs(m.cosine[i]) + abs(m.sine[i])
+        square += f[i] * f[i] / M[i * n + i]
+    for i in range(n):
+        a[i] = f[i] / M[i * n + i] if square < inf else 0.0
+    return sqrt(square) if square < inf else 0.0

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lagrangian import LinearContacts, LinearSystem, Scene
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep.model import model
-from lcpstep.stepping.extent import extent, is_stiff, places
+from lcpstep.stepping.extent import extent, is_stiff, places, sizes
 
 M = np.array([[2.0, 0.5], [0.5, 1.0]])
 C = np.array([[0.1, 0.0], [0.0, 0.2]])
@@ -63,3 +63,20 @@ def test_forces_count_as_stiff_springs_let_them():
 
 def test_damping_or_a_spring_makes_a_system_stiff():
     assert [is_stiff(model(scene(**x))) for x in ({}, {"C": C}, {"K": K})] == [False, True, True]
+
+
+def test_sizes_are_of_the_energy_that_a_motion_has_and_comes_to():
+    constant, sine = np.array([3.0, -5.0]), np.array([0.5, 0.0])
+    of = scene(K=K, C=C, force=Harmonic(constant=constant, sine=sine, omega=2.0))
+    q, v, time = np.array(of.q0), np.array(of.v0), 0.25
+    far, fast, longest = sizes(model(of), T, of.q0, of.v0, time)
+    net = np.abs(constant + sine * np.sin(2.0 * T) - K @ q - C @ v)
+    f = net + np.abs(K) @ np.abs(q) + np.abs(C) @ np.abs(v) + np.abs(constant) + np.abs(sine)
+    speed = np.sqrt(v @ M @ v) + time * np.sqrt(np.sum(f**2 / M.diagonal()))
+    assert (far, fast) == pytest.approx((np.sqrt(q @ M @ q) + time * speed, speed), rel=1e-14)
+    assert longest == pytest.approx(0.2 + time * (8.0 + time * np.max(f / M.diagonal())), rel=1e-14)
+
+
+def test_of_what_rests_without_forces_no_size_is_known():
+    of = Scene(LinearSystem(M), [0.1, -0.2], [0.0, 0.0], (0.0, 1.0))
+    assert sizes(model(of), 0.0, of.q0, of.v0, 1.0) == (np.inf, np.inf, np.inf)

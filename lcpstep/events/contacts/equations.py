@@ -17,7 +17,7 @@ from lcpstep.events.rows.equations import (
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.dynamics import gaps
 from lcpstep.kernels.vectors import copy, largest, product
-from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.pointers import Doubles, abs, after, max, min
 
 
 def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
@@ -81,7 +81,8 @@ def share_left(s: Rubbing) -> float:
     What is put right by more than the motion, impact for impact, would not let it die away.
     """
     left = largest(s.q, 0.0, s.n_q) + s.scan_length * largest(s.v, 0.0, s.n_q)
-    return left / s.atol if 0.0 < left < s.atol else 1.0
+    whole = min(s.atol, s.rtol * s.rows.longest)
+    return left / whole if 0.0 < left < whole else 1.0
 
 
 def force_noise(s: Rubbing) -> float:

@@ -16,7 +16,7 @@ import numpy as np
 
 from lcpstep.arrays import doubles, indices
 from lcpstep.events.codes import BEGIN, LEANS, OPEN, SLIDES, STICKS
-from lcpstep.events.rows.equations import least_effect, other, size_of
+from lcpstep.events.rows.equations import least_gap, least_speed, other, size_of
 from lcpstep.events.rows.held import constrain, hold, hold_joints, is_held
 from lcpstep.events.rows.loads import share_out
 from lcpstep.events.rows.on_joints import can_bear
@@ -161,12 +161,12 @@ def measure_velocities(s: Contacts, v: Doubles) -> None:
 
 def gap_tolerance(s: Contacts, c: int) -> float:
     """The gap of contact c that goes without moving a coordinate by more than its tolerance."""
-    return least_effect(s, s.n_j + c, s.q)
+    return least_gap(s, s.n_j + c, s.q)
 
 
 def speed_tolerance(s: Contacts, i: int) -> float:
     """The velocity of row i that goes without changing a velocity by more than its tolerance."""
-    return least_effect(s, i, s.v)
+    return least_speed(s, i, s.v)
 
 
 def still(s: Contacts, i: int) -> float:

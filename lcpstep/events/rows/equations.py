@@ -6,6 +6,8 @@ Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical System
 
 from __future__ import annotations
 
+from math import sqrt
+
 import cython
 
 from lcpstep.events.rows.state import Rows
@@ -13,7 +15,7 @@ from lcpstep.kernels.acceleration import divide_by_mass, response
 from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import copy, product
-from lcpstep.pointers import Doubles, abs, after
+from lcpstep.pointers import Doubles, abs, after, min
 
 JUMPS = 1e-9  # of velocities: a rate of a gap that changes by less at a corner does so by rounding
 BENDS = 8.0  # times what it changes by just beside the corner: neither is that a jump
@@ -145,15 +147,27 @@ def size_of_acceleration(s: Rows, i: int, a: Doubles) -> float:
     return size
 
 
-def least_effect(s: Rows, i: int, x: Doubles) -> float:
+def least_gap(s: Rows, i: int, q: Doubles) -> float:
+    """What row i can change of itself without moving a coordinate by more than its tolerance."""
+    return least_effect(s, i, q, s.far)
+
+
+def least_speed(s: Rows, i: int, v: Doubles) -> float:
+    """The same of its velocity."""
+    return least_effect(s, i, v, s.fast)
+
+
+def least_effect(s: Rows, i: int, x: Doubles, size: float) -> float:
     """What row i can change of itself without changing an x by more than its tolerance, in whatever unit it has.
 
+    size : of all x in the metric of M, of which it moves none by more than rtol, where that is less than atol
     Zero where it depends on no coordinate, as in the middle of a bowl.
     """
-    least = -1.0
+    own, least = s.D[i * s.n_r + i], -1.0
+    most = s.rtol * size / sqrt(own) if own > 0.0 else 0.0
     for j in range(s.n_q):
         moved = abs(s.MR[i * s.n_q + j])
         if moved > 0.0:
-            here = (s.atol + s.rtol * abs(x[j])) * s.D[i * s.n_r + i] / moved
+            here = (min(s.atol, most * moved) + s.rtol * abs(x[j])) * own / moved
             least = here if least < 0.0 or here < least else least
     return least if least > 0.0 else 0.0

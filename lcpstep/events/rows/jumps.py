@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.rows.equations import JUMPS, least_effect, list_gaps, measure_rates, size_of
+from lcpstep.events.rows.equations import JUMPS, least_gap, least_speed, list_gaps, measure_rates, size_of
 from lcpstep.events.rows.held import constrain, hold_joints
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.clock import NUDGE
@@ -69,7 +69,7 @@ def open_at(s: Rows, t: float, motion: RungeKutta) -> int:
     """The first row at rest whose gap is open, or the other way, by more than errors of the step just made; or -1."""
     list_gaps(s, t, motion.y_new, after(motion.y_new, s.n_q))
     for i in range(s.n_j + s.n_c):
-        if s.rests[i] == 1 and abs(s.near[i]) > max(TOLERANCES * least_effect(s, i, motion.y_new), s.slack):
+        if s.rests[i] == 1 and abs(s.near[i]) > max(TOLERANCES * least_gap(s, i, motion.y_new), s.slack):
             return i
     return -1
 
@@ -117,7 +117,7 @@ def unseen(s: Rows, i: int, v: Doubles) -> float:
 
 def error(s: Rows, i: int, v: Doubles) -> float:
     """Of the velocity of row i: its rounding, and some of the tolerance."""
-    return max(JUMPS * size_of(s, i, s.rate[i], v), TOLERANCES * least_effect(s, i, v))
+    return max(JUMPS * size_of(s, i, s.rate[i], v), TOLERANCES * least_speed(s, i, v))
 
 
 def velocity(s: Rows, i: int, t: float, y: Doubles) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.rows.equations import least_effect, list_gaps
+from lcpstep.events.rows.equations import least_gap, list_gaps
 from lcpstep.events.rows.held import measure_missing, push_by_change, renew_held
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import factor_mass
@@ -76,7 +76,7 @@ def none_open(s: Rows, q: Doubles, tolerances: float) -> bool:
     """Whether the gaps just listed take no more than that of the tolerance from any coordinate."""
     none = True
     for m in range(s.n_held):
-        none = none and abs(s.change[m]) <= tolerances * least_effect(s, s.row[m], q)
+        none = none and abs(s.change[m]) <= tolerances * least_gap(s, s.row[m], q)
     return none
 
 

@@ -5,6 +5,7 @@ cdef class Rows(Clock):
     cdef readonly bint fixed, moving
     cdef bint on_joints, known
     cdef readonly double rtol, atol
+    cdef public double far, fast, longest
     cdef Sudden sudden
     cdef double slack
     cdef Doubles a_free, force, work, shifted, M, R, MR, D, G, rate, bias, near, further

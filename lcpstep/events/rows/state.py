@@ -11,7 +11,7 @@ from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.clock import Clock
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.sudden import Sudden
-from lcpstep.pointers import after, indices_after
+from lcpstep.pointers import after, indices_after, inf
 
 
 class Rows(Clock):
@@ -20,6 +20,9 @@ class Rows(Clock):
     model, joints, tangents   the same system with its contacts, its joints and its tangents as rows
     n_q, n_c, n_j, n_t, n_r   coordinates, contacts, joints, tangents; rows in all
     rtol, atol                tolerances
+    far, fast, longest        of the motion all positions, and velocities, in the metric of M, and the largest
+                              coordinate, each at its largest, roughly: absolute tolerances are no more than rtol of
+                              them; infinite where these are to hold as given
     sudden, slack             of velocities that jump; gap of a row at rest that a step may leave, as steps have shown
     a_free, force : (n_q,)    acceleration M^-1 f without contacts and joints, f
     M                         factor of the mass matrix, where that changes
@@ -65,6 +68,7 @@ class Rows(Clock):
         self.moving = model.motion.given or joints.motion.given or tangents.motion.given
         self.known = False
         self.rtol, self.atol = tolerances
+        self.far = self.fast = self.longest = inf
         self.sudden, self.slack = Sudden(), 0.0
         self.row_numbers = np.zeros(4 * n + n * n + 5 * r * n + 3 * r * r + 9 * r + n_j * n_j)
         self.a_free = doubles(self.row_numbers)

@@ -20,7 +20,7 @@ from lcpstep.events.contacts.guards import first_fall, read
 from lcpstep.events.contacts.hops import FAINT
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
-from lcpstep.events.rows.contacts import rubs
+from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
 from lcpstep.events.rows.equations import measure_biases, renew_rates, size_of
 from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.quadratic import first_zero
@@ -66,9 +66,9 @@ def widen_bands(s: Strides) -> None:
         size = size_of(s.rows, i, s.rate[i], s.v) + s.h * size
         if s.mode[c] == OPEN:
             s.height[c] = s.height[c] if s.carried[c] == 1 else 0.0
-            s.band[g] = max(s.band[g], NOISE * max(s.h * size, s.atol))
+            s.band[g] = max(s.band[g], NOISE * max(s.h * size, gap_tolerance(s.rows, c)))
         else:
-            s.band[g] = NOISE * (size + s.atol)
+            s.band[g] = NOISE * (size + speed_tolerance(s.rows, i))
         s.armed[g] = 1 if s.begin_value[g] > s.band[g] and s.carried[c] == 0 else 0
 
 

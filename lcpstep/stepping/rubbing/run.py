@@ -13,6 +13,7 @@ from lcpstep.events.contacts.run import ContactRun, start
 from lcpstep.recording import States
 from lcpstep.stepping.adaptive import FIRST
 from lcpstep.stepping.again import Again
+from lcpstep.stepping.extent import sizes
 from lcpstep.stepping.rubbing.steps import RubbingSteps
 from lcpstep.stepping.steps import divided
 from lcpstep.trajectory import Status
@@ -21,8 +22,10 @@ if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
 
 Array = NDArray[np.float64]
-# Absolute and relative: hops that rise no higher, and sliding velocities of this size, are over
+# Of the state at hand, and of the whole motion, or in metres and m/s where that is less: hops that rise no higher,
+# and sliding velocities of this size, are over
 ROUNDING = 1e-12
+SOON = 5.0  # intervals between looks: how far ahead forces count for the size of the motion
 
 
 class RubbingRun(ContactRun):
@@ -36,6 +39,9 @@ class RubbingRun(ContactRun):
         h, n = parts[0][0], parts[-1][3]
         steps = int(method.order), h, float(scene.t_span[0]), n, method.tolerance or 0.0
         system: RubbingSteps = start(scene, RubbingSteps, ROUNDING, ROUNDING, *steps)
+        at = float(scene.t_span[0]), np.array(scene.q0), np.array(scene.v0)
+        rows = system.rows
+        rows.far, rows.fast, rows.longest = sizes(rows.model, *at, SOON * system.scan_length)
         span = scene.t_span[1] - scene.t_span[0]
         system.next_step = FIRST * span if method.tolerance else h
         return system
