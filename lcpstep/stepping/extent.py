@@ -98,14 +98,17 @@ def sizes(m: Model, t: float, q: Any, v: Any, time: float) -> tuple[float, float
     """How far, and how fast, a system is that goes on from q, v (n_q,) for a time; and its largest coordinate.
 
     In the metric of its masses, sqrt(q M q) and sqrt(v M v), which tells of coordinates in different units, and of
-    those that are zero, as well. All are infinite where nothing is known of the motion: at rest, without forces.
+    those that are zero, as well. All are infinite where nothing is known of the motion: at rest, without forces or
+    under forces by a function, which may begin at zero, or at its rounding.
     """
     n = m.n_q
     space = np.zeros(2 * n + 2 * n * n)
     at, at_rate, work = doubles(q), doubles(v), doubles(space)
     M = after(work, 2 * n)
     mass(m, t, at, at_rate, M)
-    fast = in_metric(M, at_rate, n) + time * push(m, t, at, at_rate, M, work)
+    fast = in_metric(M, at_rate, n)
+    if fast > 0.0 or (m.linear and not (m.force.given or m.frame.given)):
+        fast += time * push(m, t, at, at_rate, M, work)
     if fast == 0.0:
         return inf, inf, inf
     longest = largest(at, 0.0, n) + time * (largest(at_rate, 0.0, n) + time * largest(work, 0.0, n))

@@ -80,3 +80,13 @@ def test_sizes_are_of_the_energy_that_a_motion_has_and_comes_to():
 def test_of_what_rests_without_forces_no_size_is_known():
     of = Scene(LinearSystem(M), [0.1, -0.2], [0.0, 0.0], (0.0, 1.0))
     assert sizes(model(of), 0.0, of.q0, of.v0, 1.0) == (np.inf, np.inf, np.inf)
+
+
+def rising(t, q, v, p, out):
+    out[0], out[1] = np.sin(t), 0.1 + 0.2 - 0.3
+
+
+def test_forces_by_a_function_tell_no_size_of_what_rests():
+    """They may begin at zero, or be what rounding leaves of terms that cancel."""
+    of = Scene(LinearSystem(M, force=rising), [0.0, 0.0], [0.0, 0.0], (0.0, 1.0))
+    assert sizes(model(of), 0.0, of.q0, of.v0, 1.0) == (np.inf, np.inf, np.inf)
