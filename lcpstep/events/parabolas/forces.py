@@ -100,19 +100,25 @@ def list_forces(s: Mechanism) -> None:
 
 
 def stands(s: Mechanism) -> bool:
-    """Whether no contact that touches accelerates into its surface, and none pulls.
+    """Whether no contact that touches accelerates into its surface, and none pulls, by more than rounding.
 
     Rows that rounding has dropped bear no load: what has opened by the force of such a contact would close again at
     once, for ever.
     """
     most = largest(after(s.multiplier, s.n_j), 0.0, s.n_c)
     for c in range(s.n_c):
-        if s.multiplier[s.n_j + c] < -CHECKED * most:
+        if s.multiplier[s.n_j + c] < -CHECKED * most and pulls(s, c):
             return False
         touches = s.mode[c] != OPEN or (s.gap[s.n_j + c] == 0.0 and s.velocity[s.n_j + c] == 0.0)
         if touches and enters(s, c):
             return False
     return True
+
+
+def pulls(s: Mechanism, c: int) -> bool:
+    """Whether what contact c pulls with is more than rounding: of bodies that fall together it is all there is."""
+    i = s.n_j + c
+    return -s.multiplier[i] * s.D[i * s.n_r + i] > PASSES * size_of_acceleration(s, i, s.a)
 
 
 def enters(s: Mechanism, c: int) -> bool:

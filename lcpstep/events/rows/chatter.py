@@ -31,6 +31,7 @@ from lcpstep.kernels.quadratic import accumulation, first_zero
 from lcpstep.kernels.vectors import clear, copy, copy_indices, largest
 from lcpstep.pointers import abs, max, min
 
+LEFT_OVER = 1e3  # times the tolerance of a velocity, as masses and restitutions of a collapse take them apart
 CHECKED = 1e-10  # of the largest force: a pull that is no rounding
 
 
@@ -59,12 +60,23 @@ def time_left(s: Contacts, c: int) -> float:
     low = alpha < 0.0 and u * u <= -2.0 * alpha * tolerance
     if slow and low:
         return 0.0
+    if r == 1.0 and low and is_left_over(s, i, u, alpha):
+        return 0.0
     if r == 1.0 or u < 0.0:
         return -1.0
     if abs(alpha) * s.since[c] <= noise:  # an inelastic collapse
         return 0.0 if slow and u * s.since[c] <= tolerance and not awaits(s, c) else -1.0
     T = accumulation(u, alpha, r) if low else -1.0
     return -1.0 if not low or s.t0 + T > min(s.high, s.t_end) or interrupted(s, c, T) else T
+
+
+def is_left_over(s: Contacts, i: int, u: float, alpha: float) -> bool:
+    """Whether elastic hops from u on, hardly faster than the tolerance, are more than a run can follow.
+
+    A collapse that others end leaves them so, where those come to rest first; nothing would take them.
+    """
+    hops = -alpha * (s.t_end - s.t0) / (2.0 * abs(u))
+    return abs(u) <= LEFT_OVER * speed_tolerance(s, i) and hops > s.tally.max_events
 
 
 def interrupted(s: Contacts, c: int, T: float) -> bool:
