@@ -9,7 +9,7 @@ import pytest
 
 from lagrangian import LinearContacts, LinearSystem, Scene
 from lagrangian.scenes import beads, piles
-from lcpstep import EventDriven, Kind, Moreau, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
 
 GRAVITY = 9.81
 
@@ -192,3 +192,31 @@ def test_the_bound_on_events_is_kept_and_says_where():
     assert m.counts.events < 80
     assert "max_events = 50" in m.message
     assert "contacts" in m.message
+
+
+def test_bodies_that_touch_fall_together_whatever_their_masses():
+    """Rounding of their weights presses some on each other: no force is needed for that, and none is missing."""
+    rng = np.random.default_rng(4)
+    for _ in range(40):
+        n = int(rng.integers(2, 5))
+        scene = beads.line(
+            np.full(n, 0.5), np.zeros(n), 10.0 ** rng.uniform(-1.0, 1.0, n), 0.5, 0.3, "stack", {},
+            floor=True, g=GRAVITY,
+        )  # fmt: skip
+        run = simulate(scene, EventDriven(), keep=[0.2])
+        assert run.status is Status.DONE
+        np.testing.assert_allclose(run.q[0], 0.5 - 0.5 * GRAVITY * 0.04, rtol=1e-14)
+
+
+@pytest.mark.parametrize("r", [0.3, 0.6])
+def test_a_collapse_above_an_elastic_floor_comes_to_rest(r):
+    """What the upper contact takes leaves the lower one hops faster than the tolerance, and nothing to end them."""
+    scene = Scene(
+        LinearSystem(np.eye(2), force=[-GRAVITY, -GRAVITY]), [0.1, 0.15], [0.0, 0.0], (0.0, 2.0),
+        LinearContacts([[1.0, 0.0], [-1.0, 1.0]], restitution=[1.0, r]),
+    )  # fmt: skip
+    run, steps = simulate(scene, EventDriven(max_events=20_000)), simulate(scene, Located(1e-4))
+    assert run.status is Status.DONE
+    assert not np.any(run.v[-1])
+    fast = [m.impacts.time[m.impacts.before < -1e-6][-1] for m in (run, steps)]
+    assert abs(fast[0] - fast[1]) < 1e-6
