@@ -5,10 +5,11 @@ higher than the tolerance, and when nothing else happens before T to what the co
 answers another impact in another way than in flight, its own may throw a contact off that rests, and one that slides
 may stop between them. Closing takes the speed u, with the friction that belongs to it, by an impulse that the contact
 force up to T pays for, and that contacts bear which stay closed. Hops as slow as the tolerance are left out too,
-elastic ones as well, and impacts of contacts that nothing presses (inelastic collapse) when they have both a speed
-and a way below it, together with those of the contacts that they alternate with: one that struck another at rest
-would leave it, and nothing would bring it back before the next blow. Source: A. Nordmark, P. Piiroinen, Simulation
-and stability analysis of impacting systems with complete chattering, Nonlinear Dynamics 58 (2009).
+elastic ones as well, also a little faster ones that no run could follow to the end of the span, and impacts of
+contacts that nothing presses (inelastic collapse) when they have both a speed and a way below it, together with those
+of the contacts that they alternate with: one that struck another at rest would leave it, and nothing would bring it
+back before the next blow. Source: A. Nordmark, P. Piiroinen, Simulation and stability analysis of impacting systems
+with complete chattering, Nonlinear Dynamics 58 (2009).
 """
 
 from __future__ import annotations
