@@ -28,11 +28,13 @@ from lcpstep.events.rows.contacts import (
 )
 from lcpstep.events.rows.equations import other
 from lcpstep.events.rows.held import constrain, solve_held
+from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.quadratic import accumulation, first_zero
 from lcpstep.kernels.vectors import clear, copy, copy_indices, largest
 from lcpstep.pointers import abs, max, min
 
 LEFT_OVER = 1e3  # times the tolerance of a velocity, as masses and restitutions of a collapse take them apart
+FADED = 1e-6  # of the speed of a hop: what those have lost that others still take something of
 CHECKED = 1e-10  # of the largest force: a pull that is no rounding
 
 
@@ -61,7 +63,7 @@ def time_left(s: Contacts, c: int) -> float:
     low = alpha < 0.0 and u * u <= -2.0 * alpha * tolerance
     if slow and low:
         return 0.0
-    if r == 1.0 and low and is_left_over(s, i, u, alpha):
+    if r == 1.0 and low and is_left_over(s, c, u, alpha):
         return 0.0
     if r == 1.0 or u < 0.0:
         return -1.0
@@ -71,13 +73,26 @@ def time_left(s: Contacts, c: int) -> float:
     return -1.0 if not low or s.t0 + T > min(s.high, s.t_end) or interrupted(s, c, T) else T
 
 
-def is_left_over(s: Contacts, i: int, u: float, alpha: float) -> bool:
-    """Whether elastic hops from u on, hardly faster than the tolerance, are more than a run can follow.
+def is_left_over(s: Contacts, c: int, u: float, alpha: float) -> bool:
+    """Whether contact c, elastic, hops at u, hardly faster than the tolerance, and for longer than a run can follow.
 
-    A collapse that others end leaves them so, where those come to rest first; nothing would take them.
+    A collapse that others end leaves it so, where those come to rest first; nothing takes speed from it any more, and
+    the hop behind it took as long as the next one will.
     """
-    hops = -alpha * (s.t_end - s.t0) / (2.0 * abs(u))
-    return abs(u) <= LEFT_OVER * speed_tolerance(s, i) and hops > s.tally.max_events
+    T = -2.0 * abs(u) / alpha
+    alike = abs(s.since[c] - T) <= FADED * T + 4.0 * RESOLUTION * abs(s.t0)
+    slow = abs(u) <= LEFT_OVER * speed_tolerance(s, s.n_j + c)
+    return slow and alike and s.t_end - s.t0 > s.tally.max_events * T and not hops_beside(s, c)
+
+
+def hops_beside(s: Contacts, c: int) -> bool:
+    """Whether a contact that impacts connect with contact c hops as well, no higher than the tolerance."""
+    passed_on = passes_on(s, c)
+    for d in range(s.n_c):
+        hops = s.mode[d] == OPEN and gap_of(s, d) <= gap_tolerance(s, d)
+        if d != c and hops and (passed_on or meets(s, c, s.n_j + d)):
+            return True
+    return False
 
 
 def interrupted(s: Contacts, c: int, T: float) -> bool:
