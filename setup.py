@@ -61,11 +61,7 @@ MACROS = [
     ("CYTHON_CLINE_IN_TRACEBACK", "0"),  # lines of C, which nobody reads: a tenth of the compiler's time
 ]
 # What Cython begins with
-HEADERS = (
-    "#define PY_SSIZE_T_CLEAN",
-    "#include <Python.h>",
-    "#include <numpy/ndarrayobject.h>",
-)
+HEADERS = "#define PY_SSIZE_T_CLEAN\n#include <Python.h>\n#include <numpy/ndarrayobject.h>\n"
 MANY = 8  # modules for which to read these once is worth it
 ROWS = ["-fno-trapping-math"]  # numbers that a choice does not take may be formed: nobody asks for traps
 NO_COMPILER = (
@@ -120,23 +116,27 @@ class Build(build_ext):
                     file.unlink(missing_ok=True)
 
     def build_extensions(self) -> None:
-        """Compile; by gcc with Python's and NumPy's headers read once, which takes a tenth less."""
-        alike = defaultdict(list)  # what is compiled with other options asks for headers of its own
+        """Compile; by gcc with Python's and NumPy's headers read once."""
+        if os.name == "posix" and is_gcc(self.compiler.compiler_so[0]):
+            self.share_headers()
+        super().build_extensions()
+
+    def share_headers(self) -> None:
+        """Have modules take over headers that were read with the same options: with others the code would change."""
+        alike = defaultdict(list)
         for ext in self.extensions:
             if ext.define_macros == MACROS and not is_built(ext):
                 alike[tuple(ext.extra_compile_args)].append(ext)
-        compiler = self.compiler.compiler_so if os.name == "posix" else []
         for number, (options, extensions) in enumerate(alike.items()):
-            if len(extensions) >= MANY and is_gcc(compiler[0]):
+            if len(extensions) >= MANY:
                 header = self.read_headers(Path(self.build_temp) / f"headers{number}.h", options)
                 for ext in extensions:
                     ext.extra_compile_args = ["-include", str(header), *options]
-        super().build_extensions()
 
     def read_headers(self, file: Path, options: Iterable[str]) -> Path:
         """Have the compiler keep what it reads in these headers, for the modules that include this file first."""
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text("\n".join([*HEADERS, ""]))
+        file.write_text(HEADERS)
         folders = [f"-I{folder}" for folder in (np.get_include(), *self.compiler.include_dirs)]
         macros = [f"-D{name}={value}" for name, value in MACROS]
         how = [*self.compiler.compiler_so, *macros, *folders, *options]

@@ -25,9 +25,8 @@ from lcpstep.pace import FIRST, Pace
 
 Array = NDArray[np.float64]
 NOTHING = 1e-9  # an exponent per iteration that the digits of derivatives do not tell from zero
-SQUARE = (
-    2.0  # power of time up to which growth is that of a neutral motion: with the first what turns a deviation
-)
+# Power of time up to which growth is that of a neutral motion: with the first what turns a deviation
+SQUARE = 2.0
 RARE = 0.01  # landings per iteration, below which the growth between them is told
 BLOCKS = 20  # for the standard error
 ALIGNING = 500  # iterations, at most, in which the deviation turns to where it grows most

@@ -61,7 +61,7 @@ class CoupledRun(SparseRun):
             given: Any = friction.tangent
             T = csr_array(given)
             self.tangent_restitution = friction.tangential(contacts.restitution)
-        self.T, self.abs_T, self.frictional = T, abs(T), friction is not None
+        self.T, self.frictional = T, friction is not None
         self.joints, self.modes = JointRows(scene), np.zeros(n_c, dtype=np.int64)
         self.rows_p, self.of_joints = np.zeros(scene.n_j + 2 * n_c), np.zeros(n_c, dtype=bool)
         super().__init__(method, scene, kept)
@@ -164,31 +164,31 @@ class CoupledRun(SparseRun):
         self, step: Any, active: Any, before: Before, rest: tuple[Array, Array, Array], blows: Blows
     ) -> tuple[Problem, Any]:
         """The problem of a blow; which contacts strike. `rest`: rates of joints, normals and tangents at v = 0."""
-        joints, speeds, (J_t, s_t, slip) = step.coupled.joints, np.abs(before.v), rest
-        rates, sizes, strikes = self.rates(step, before, active, s_t, slip, blows)
-        b = np.append((step.coupled.R @ before.v)[joints] + J_t, rates)
-        size = np.append((step.coupled.abs_R @ speeds)[joints] + np.abs(J_t), sizes)
+        J_t, s_t, slip = rest
+        speeds, known = np.abs(before.v), np.concatenate([J_t, -s_t, slip])
+        b, size = step.coupled.R @ before.v + known, step.coupled.abs_R @ speeds + np.abs(known)
+        strikes = self.add_rebounds(step, before, active, b[self.joints.n :], size[self.joints.n :], blows)
         rough = active & self.stiction.rough
         return Problem(b, size, active, rough, self.stiction.mu, np.max(speeds)), strikes
 
-    def rates(
-        self, step: Any, before: Before, active: Any, s_t: Array, slip: Array, blows: Blows
-    ) -> tuple[Array, Array, Any]:
-        """Rates of normals and tangents with what restitution adds, sizes of terms; which contacts strike.
+    def add_rebounds(
+        self, step: Any, before: Before, active: Any, b: Array, sizes: Array, blows: Blows
+    ) -> Any:
+        """Add what restitution does to the rates b (2 n_c,) of normals and tangents, and to the sizes of their terms.
 
-        That is asked where there is friction: without it no law depends on it.
+        Which contacts strike: that is asked where there is friction; without it no law depends on it.
         """
-        e, v, u, rough = self.equations, before.v, before.u, active & self.stiction.rough
-        speeds, b = np.abs(v), [e.G_rows.times(v) - s_t, self.T @ v + slip]
-        sizes = [e.G_rows.sizes(v) + np.abs(s_t), self.abs_T @ speeds + np.abs(slip)]
+        u, rough = before.u, active & self.stiction.rough
         if rough.any():
-            b = [np.where(np.abs(x) > NO_APPROACH * size, x, 0.0) for x, size in zip(b, sizes, strict=True)]
-        slow = np.abs(b[0] - u) + ROUNDING * step.steepest * np.max(np.abs(self.v))
+            b[~(np.abs(b) > NO_APPROACH * sizes)] = 0.0
+        slow = np.abs(b[: len(u)] - u) + ROUNDING * step.steepest * np.max(np.abs(self.v))
         strikes = active & (u < -slow) & rough.any()
         bounces = np.any(strikes) and not blows.last
         tangents = bounces * self.tangent_restitution * before.sliding
-        added = np.concatenate([blows.rebound(u, e.restitution), tangents])
-        return np.concatenate(b) + added, np.concatenate(sizes) + np.abs(added), strikes
+        added = np.concatenate([blows.rebound(u, self.equations.restitution), tangents])
+        b += added
+        sizes += np.abs(added)
+        return strikes
 
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""

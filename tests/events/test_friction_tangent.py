@@ -96,7 +96,7 @@ def test_the_woodpecker_through_impacts_sticking_slip_and_release(t_end):
 
 
 @pytest.mark.slow
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.integers(0, 10**6), st.booleans())
 @example(
     221638, True

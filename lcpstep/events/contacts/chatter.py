@@ -18,6 +18,7 @@ from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.chatter import (
     disturbs,
     find_over,
+    hops_beside,
     just_opened,
     meets,
     moves,
@@ -26,7 +27,6 @@ from lcpstep.events.rows.chatter import (
     tell_over,
 )
 from lcpstep.events.rows.contacts import (
-    gap_of,
     gap_tolerance,
     hold_modes,
     measure_velocities,
@@ -76,21 +76,11 @@ def rests(s: Rubbing, c: int) -> bool:
     go on. Beside others that hop on sliding passes through zero, and does not rest there.
     """
     i = s.n_j + s.n_c + c
-    if not rubs(s.rows, c) or s.mu_s[c] == s.mu[c] or hops_on(s, c):
+    if not rubs(s.rows, c) or s.mu_s[c] == s.mu[c] or hops_beside(s.rows, c, True):
         return False
     pull = abs(product(s.R, s.a, i, s.n_q) + s.bias[i])
     most = sqrt(2.0 * pull * NOISE * size_of(s.rows, i, 0.0, s.q))
     return abs(sliding(s.rows, c)) <= max(most, still(s.rows, i))
-
-
-def hops_on(s: Rubbing, c: int) -> bool:
-    """Whether a contact that impacts connect with contact c is left hopping, no higher than the tolerance."""
-    passed_on = passes_on(s.rows, c)
-    for d in range(s.n_c):
-        hops = s.mode[d] == OPEN and s.rows.left[d] < 0.0 and gap_of(s.rows, d) <= gap_tolerance(s.rows, d)
-        if d != c and hops and (passed_on or meets(s.rows, c, s.n_j + d)):
-            return True
-    return False
 
 
 def stops_others(s: Rubbing, c: int, T: float) -> bool:

@@ -82,14 +82,17 @@ def is_left_over(s: Contacts, c: int, u: float, alpha: float) -> bool:
     T = -2.0 * abs(u) / alpha
     alike = abs(s.since[c] - T) <= FADED * T + 4.0 * RESOLUTION * abs(s.t0)
     slow = abs(u) <= LEFT_OVER * speed_tolerance(s, s.n_j + c)
-    return slow and alike and s.t_end - s.t0 > s.tally.max_events * T and not hops_beside(s, c)
+    return slow and alike and s.t_end - s.t0 > s.tally.max_events * T and not hops_beside(s, c, False)
 
 
-def hops_beside(s: Contacts, c: int) -> bool:
-    """Whether a contact that impacts connect with contact c hops as well, no higher than the tolerance."""
+def hops_beside(s: Contacts, c: int, on: bool) -> bool:
+    """Whether a contact that impacts connect with contact c hops as well, no higher than the tolerance.
+
+    on : only one whose impacts are not left out now (`left`)
+    """
     passed_on = passes_on(s, c)
     for d in range(s.n_c):
-        hops = s.mode[d] == OPEN and gap_of(s, d) <= gap_tolerance(s, d)
+        hops = s.mode[d] == OPEN and gap_of(s, d) <= gap_tolerance(s, d) and not (on and s.left[d] >= 0.0)
         if d != c and hops and (passed_on or meets(s, c, s.n_j + d)):
             return True
     return False
