@@ -60,6 +60,8 @@ MACROS = [
     ("NPY_NO_DEPRECATED_API", "NPY_2_0_API_VERSION"),
     ("CYTHON_CLINE_IN_TRACEBACK", "0"),  # lines of C, which nobody reads: a tenth of the compiler's time
 ]
+# What runs once, when a module is imported, is not worth the compiler's time; words that gcc alone knows
+ONCE = ("CYTHON_SMALL_CODE", '__attribute__((cold, optimize("O0")))')
 # What Cython begins with
 HEADERS = "#define PY_SSIZE_T_CLEAN\n#include <Python.h>\n#include <numpy/ndarrayobject.h>\n"
 MANY = 8  # modules for which to read these once is worth it
@@ -118,6 +120,7 @@ class Build(build_ext):
     def build_extensions(self) -> None:
         """Compile; by gcc with Python's and NumPy's headers read once."""
         if os.name == "posix" and is_gcc(self.compiler.compiler_so[0]):
+            self.compiler.define_macro(*ONCE)
             self.share_headers()
         super().build_extensions()
 
