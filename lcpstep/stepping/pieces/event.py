@@ -21,7 +21,7 @@ from lcpstep.stepping.pieces.codes import (
 from lcpstep.stepping.pieces.impulses import strike, zero_speeds
 from lcpstep.stepping.pieces.keep import keep
 from lcpstep.stepping.pieces.magnitudes import speed_terms
-from lcpstep.stepping.pieces.smooth import mobility, renew_forces, renew_mobility
+from lcpstep.stepping.pieces.smooth import renew_forces, renew_mobility
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import count_turn, idle, stick
 
@@ -45,8 +45,8 @@ def event(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     if plan.plain:  # rounding of the state must not add up over many impacts
         for k in range(n_s):
             d = w.chosen[k]
-            lift(m, plan, w, w.q, d, -height(m, w, d))
-            straighten(m, plan, w, d)
+            lift(w, w.q, d, -height(m, w, d))
+            straighten(m, w, d)
         if n_s > 1:
             straighten_all(m, w, n_s)
         zero_speeds(w, w.v_try)
@@ -57,17 +57,15 @@ def event(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     return FINISHED
 
 
-def lift(m: Model, plan: Plan, w: Work, x: Doubles, c: int, distance: float) -> None:
+def lift(w: Work, x: Doubles, c: int, distance: float) -> None:
     """Move x, which is q or v, along M^-1 G_c^T so that G_c x grows by the distance."""
-    if not plan.constant:
-        mobility(m, w, c)
     W = product(w.G, after(w.MG, c * w.n_q), c, w.n_q)
     if W > 0.0:
         for i in range(w.n_q):
             x[i] += w.MG[c * w.n_q + i] * distance / W
 
 
-def straighten(m: Model, plan: Plan, w: Work, d: int) -> None:
+def straighten(m: Model, w: Work, d: int) -> None:
     """The velocities that gap d has left with, and the gap velocities of the contacts in flight that go with them.
 
     Without the latter the rounding of the Delassus matrix acts the same way at every impact: at a mass ratio of 1e12
@@ -76,7 +74,7 @@ def straighten(m: Model, plan: Plan, w: Work, d: int) -> None:
     error = w.rate[d] - product(m.G, w.v, d, w.n_q)
     if error == 0.0 or not w.W[d * w.n_c + d] > 0.0:
         return
-    lift(m, plan, w, w.v, d, error)
+    lift(w, w.v, d, error)
     for c in range(w.n_c):
         if w.status[c] == OPEN and w.grounded[c] == 0:
             change = w.W[c * w.n_c + d] * error / w.W[d * w.n_c + d]
@@ -96,15 +94,32 @@ def straighten_all(m: Model, w: Work, n_s: int) -> None:
             for i in range(w.n_q):
                 size = max(size, abs(m.G[d * w.n_q + i] * x[i]))
         if worst > ROUNDING * size:
-            n_k = 0
-            for k in range(n_s):
-                w.held[n_k] = w.chosen[k]
-                if grow_factor(w.W, w.n_c, w.problem, w.n_c, w.held, w.doubt, n_k):
-                    w.change[n_k] = -w.residual[k]
-                    n_k += 1
-            solve_factored(w.problem, w.n_c, n_k, w.change)
-            for k in range(n_k):
-                add(x, w.change[k], after(w.MG, w.held[k] * w.n_q), w.n_q)
+            put_right(w, x, n_s)
+
+
+def straighten_speeds(w: Work, n_s: int) -> None:
+    """The velocities that the contacts struck at once have left with, together.
+
+    One by one they would turn the rounding of impulses that depend on each other over and over, into a tumble: a
+    block that falls flat on three feet.
+    """
+    for k in range(n_s):
+        d = w.chosen[k]
+        w.residual[k] = product(w.G, w.v, d, w.n_q) + w.gap_t[d] - w.rate[d]
+    put_right(w, w.v, n_s)
+
+
+def put_right(w: Work, x: Doubles, n_s: int) -> None:
+    """Take what `residual` says is left in the chosen contacts, the independent ones, out of x, which is q or v."""
+    n_k = 0
+    for k in range(n_s):
+        w.held[n_k] = w.chosen[k]
+        if grow_factor(w.W, w.n_c, w.problem, w.n_c, w.held, w.doubt, n_k):
+            w.change[n_k] = -w.residual[k]
+            n_k += 1
+    solve_factored(w.problem, w.n_c, n_k, w.change)
+    for k in range(n_k):
+        add(x, w.change[k], after(w.MG, w.held[k] * w.n_q), w.n_q)
 
 
 def height(m: Model, w: Work, c: int) -> float:

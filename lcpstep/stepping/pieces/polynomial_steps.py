@@ -25,7 +25,7 @@ from lcpstep.stepping.pieces.codes import (
     ROUNDING,
     SAME_TIME,
 )
-from lcpstep.stepping.pieces.event import lift
+from lcpstep.stepping.pieces.event import straighten_speeds
 from lcpstep.stepping.pieces.impulses import strike
 from lcpstep.stepping.pieces.jumps import breaks
 from lcpstep.stepping.pieces.keep import keep
@@ -230,9 +230,7 @@ def land(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     if n_s <= 0:
         idle(w)
         return LCP_FAILED if n_s < 0 else FINISHED
-    for k in range(n_s):  # rounding of the velocity must not be larger than that of small hops
-        d = w.chosen[k]
-        lift(m, plan, w, w.v, d, w.rate[d] - product(w.G, w.v, d, w.n_q) - w.gap_t[d])
+    straighten_speeds(w, n_s)  # rounding of the velocity must not be larger than that of small hops
     if w.record.keeps_event(t):
         keep(w, t, 1.0)
     return FINISHED

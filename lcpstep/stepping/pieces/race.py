@@ -87,7 +87,7 @@ def next_zero(w: Work, c: int, end: float) -> float:
 def ordinary(m: Model, plan: Plan, w: Work, c: int, tau: float) -> bool:
     """Whether contact c strikes at tau, alone among its neighbours, and rebounds for longer than a moment.
 
-    A neighbour that touches without having been struck just now may rest after it, or strike with what touches beyond.
+    A neighbour that touches and was not struck just now may rest after it, or strike with what touches it beyond.
     """
     h, r, s = plan.h, m.restitution[c], tau - w.since[c]
     u = w.rate[c] + 2.0 * s * w.half[c]
