@@ -102,3 +102,18 @@ def test_bodies_that_fly_together_land_together(masses, method):
     run = simulate(scene, method)
     np.testing.assert_allclose(run.impacts.time[run.impacts.contact == 0], times, rtol=0.0, atol=1e-10)
     np.testing.assert_allclose(np.diff(run.q, axis=1), 0.0, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("restitution", [1.0, (0.5, 1.0, 0.0), (1.0, 1.0, 0.5)], ids=str)
+@pytest.mark.parametrize("inertia", [0.1, 0.25])
+@pytest.mark.parametrize(
+    "method", [Located(2e-3), Located(2e-3, 4), Located(1e-3, 4), EventDriven()], ids=str
+)
+def test_a_block_that_falls_flat_on_three_feet_does_not_tumble(method, inertia, restitution):
+    contacts = LinearContacts([[1.0, -0.5], [1.0, 0.0], [1.0, 0.5]], restitution=restitution)
+    system = LinearSystem(M=np.diag([1.0, inertia]), force=(-9.81, 0.0))
+    run = simulate(Scene(system, (0.1, 0.0), (0.0, 0.0), (0.0, 4.0), contacts=contacts), method)
+    assert np.max(np.abs(run.q[:, 1])) < 1e-13
+    if restitution == 1.0:  # as one body bounces, every 2 sqrt(2 0.1 / g)
+        since = np.mod(run.t + np.sqrt(0.2 / 9.81), 2.0 * np.sqrt(0.2 / 9.81)) - np.sqrt(0.2 / 9.81)
+        np.testing.assert_allclose(run.q[:, 0], 0.1 - 0.5 * 9.81 * since**2, rtol=0, atol=1e-11)

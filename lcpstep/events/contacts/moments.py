@@ -122,4 +122,6 @@ def creep(s: Rubbing, g: int, tau: float, change: float, longest: float) -> floa
         change = missing(s, g)
         if k > 0 and abs(change) <= 2.0 * RESOLUTION * tau:
             break
+        if abs(gone + change) > NEAR * tau:  # a force that but touches zero has no slope there
+            break
     return tau + gone

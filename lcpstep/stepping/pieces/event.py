@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.dynamics import gaps
 from lcpstep.kernels.linear import grow_factor, solve_factored
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, product
@@ -97,12 +98,17 @@ def straighten_all(m: Model, w: Work, n_s: int) -> None:
             put_right(w, x, n_s)
 
 
-def straighten_speeds(w: Work, n_s: int) -> None:
-    """The velocities that the contacts struck at once have left with, together.
+def straighten_struck(m: Model, w: Work, t: float, n_s: int) -> None:
+    """The same of any contacts, struck at t: the velocities that they have left with, and places of several.
 
-    One by one they would turn the rounding of impulses that depend on each other over and over, into a tumble: a
+    One by one these would turn the rounding of impulses that depend on each other over and over, into a tumble: a
     block that falls flat on three feet.
     """
+    if n_s > 1:
+        gaps(m, t, w.q, w.v, w.gap_try)
+        for k in range(n_s):
+            w.residual[k] = w.gap_try[w.chosen[k]]
+        put_right(w, w.q, n_s)
     for k in range(n_s):
         d = w.chosen[k]
         w.residual[k] = product(w.G, w.v, d, w.n_q) + w.gap_t[d] - w.rate[d]

@@ -25,7 +25,7 @@ from lcpstep.stepping.pieces.codes import (
     ROUNDING,
     SAME_TIME,
 )
-from lcpstep.stepping.pieces.event import straighten_speeds
+from lcpstep.stepping.pieces.event import straighten_struck
 from lcpstep.stepping.pieces.impulses import strike
 from lcpstep.stepping.pieces.jumps import breaks
 from lcpstep.stepping.pieces.keep import keep
@@ -230,7 +230,7 @@ def land(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     if n_s <= 0:
         idle(w)
         return LCP_FAILED if n_s < 0 else FINISHED
-    straighten_speeds(w, n_s)  # rounding of the velocity must not be larger than that of small hops
+    straighten_struck(m, w, t, n_s)  # rounding of the velocity must not be larger than that of small hops
     if w.record.keeps_event(t):
         keep(w, t, 1.0)
     return FINISHED
