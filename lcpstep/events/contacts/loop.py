@@ -41,7 +41,7 @@ from lcpstep.events.rows.keep import keep, keep_event
 from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 from lcpstep.kernels.vectors import clear, copy, copy_indices
-from lcpstep.pointers import abs, max, min
+from lcpstep.pointers import abs, min
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
 LOOK_AHEAD, FURTHER = 1e-6, 10.0
@@ -132,8 +132,8 @@ def begin(s: Rubbing) -> int:
     s.clock.find_corners(s.clock.t0)
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
-    find_closed(s)
     forget_terms(s)
+    find_closed(s)
     s.rows.next = JUMP
     return DONE
 

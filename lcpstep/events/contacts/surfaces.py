@@ -12,7 +12,7 @@ from lcpstep.events.rows.held import constrain, contradiction, parted
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.dynamics import gap_rates, gaps
 from lcpstep.kernels.vectors import clear, copy, largest, product
-from lcpstep.pointers import Doubles, abs, after, min
+from lcpstep.pointers import Doubles, abs, after, max, min
 
 FREE = 1e-9  # relative: what a row can move of itself while others are held, or it depends on them
 TOGETHER = 1e-3  # of the tolerance of a gap
@@ -126,11 +126,14 @@ def find_closed(s: Rubbing) -> None:
     """Mark the contacts that begin closed: gaps zero to rounding, or to the tolerance where they do not move.
 
     A contact that moves is in a hop, and to begin that at the surface would leave it only the height that it has
-    beyond.
+    beyond. What callbacks make of rest, as of an obstacle at the end of its swing, is no blow.
     """
     for c in range(s.n_c):
-        g, still = s.gap[s.n_j + c], abs(s.velocity[s.n_j + c]) <= speed_tolerance(s.rows, s.n_j + c)
+        g, u = s.gap[s.n_j + c], abs(s.velocity[s.n_j + c])
+        still = u <= speed_tolerance(s.rows, s.n_j + c)
         s.touches[c] = 1 if g <= s.rows.rounding_of_gap(c) or (still and g <= gap_tolerance(s.rows, c)) else 0
+        if s.touches[c] == 1 and still:
+            s.terms[c] = max(s.terms[c], u)
 
 
 def find_touching(s: Rubbing) -> None:

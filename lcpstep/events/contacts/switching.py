@@ -123,7 +123,7 @@ def place(s: Rubbing, moved: bool) -> int:
             if s.gap[s.n_j + c] < -max(s.rows.rounding_of_gap(c), gap_tolerance(s.rows, c)):
                 s.rows.culprit = c
                 return INSIDE
+    forget_terms(s)
     if moved:
         find_closed(s)
-    forget_terms(s)
     return DONE
