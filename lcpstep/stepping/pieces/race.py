@@ -87,11 +87,11 @@ def next_zero(w: Work, c: int, end: float) -> float:
 def ordinary(m: Model, plan: Plan, w: Work, c: int, tau: float) -> bool:
     """Whether contact c strikes at tau, alone among its neighbours, and rebounds for longer than a moment.
 
-    A neighbour that touches and was not struck just now may rest after it, or strike with what touches it beyond.
+    A neighbour that touches, not having been struck, may rest after it, or strike with what touches it beyond.
     """
     h, r, s = plan.h, m.restitution[c], tau - w.since[c]
     u = w.rate[c] + 2.0 * s * w.half[c]
-    if not u < 0.0 or r == 0.0 or struck_at(plan, w, c, tau):
+    if not u < 0.0 or r == 0.0 or (w.last[c] >= 0.0 and tau - w.last[c] <= CLOSE * h):
         return False
     if r < 1.0 and w.half[c] < 0.0 and (r * u / w.half[c] < SHORT * h or w.hits[c] >= plan.many):
         return False
@@ -99,14 +99,9 @@ def ordinary(m: Model, plan: Plan, w: Work, c: int, tau: float) -> bool:
         if d != c and w.W[d * w.n_c + c] != 0.0:
             s = tau - w.since[d]
             g, v = w.gap[d] + s * (w.rate[d] + s * w.half[d]), w.rate[d] + 2.0 * s * w.half[d]
-            if g <= plan.slack and (v < 0.0 or not struck_at(plan, w, d, tau)):
+            if g <= plan.slack and (v < 0.0 or w.last[d] < 0.0):
                 return False
     return True
-
-
-def struck_at(plan: Plan, w: Work, c: int, tau: float) -> bool:
-    """Whether the last impact of contact c is as good as at tau."""
-    return w.last[c] >= 0.0 and tau - w.last[c] <= CLOSE * plan.h
 
 
 def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
