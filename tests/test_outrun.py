@@ -150,3 +150,15 @@ def test_the_bound_of_the_sources_alone_is_that_of_what_is_built():
     built, plain = both_ways(PROGRAM)
     assert built == plain
     assert len(built) == 3
+
+
+def test_rounding_beside_what_an_impact_has_brought_to_rest_is_no_gain():
+    """A pendulum that a plastic wall stops: speeds of 1e-90 m/s come and go in its joint."""
+    stopped = Description(
+        M=((1.0, 0.0), (0.0, 1.0)), q0=(0.6, -0.8), v0=(-0.8, -0.6), t_span=(0.0, 3.0), h=0.01, G=((1.0, 0.0),),
+        offset=(-0.6,), J=((0.0, 0.0),), joint_offset=(-0.5,), joint_bend=(1.0,),
+    )  # fmt: skip
+    for order in (2, 4):
+        run = simulate(stopped.scene(), Located(0.01, order))
+        assert run.doubt == ""
+        np.testing.assert_allclose(run.q[-1], stopped.q0, rtol=0, atol=1e-14)

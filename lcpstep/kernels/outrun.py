@@ -18,6 +18,8 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles, abs, after, max
 
+ROUNDING = 64 * 2.0**-52  # of the fastest motion of a run
+
 
 @cython.ccall
 def steepest(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float, parts: int) -> Any:
@@ -33,23 +35,38 @@ def steepest(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float, par
     at, x, rates, pushes = doubles(t), doubles(q), doubles(v), doubles(impulse)
     work, out = doubles(space), doubles(found)
     with cython.nogil:
+        fastest, top = 0.0, 0  # up to the state at hand
         for i in range(parts):
-            most, best, x_t = 0.0, -1, after(rates, i * steps // parts * n)
+            most, best, until, x_t = 0.0, -1, 0, after(rates, i * steps // parts * n)
             speed = product(x_t, x_t, 0, n)
             for k in range(i * steps // parts, (i + 1) * steps // parts):
+                if speed > fastest:
+                    fastest, top = speed, k
                 x_t, before = after(rates, (k + 1) * n), speed
                 speed = product(x_t, x_t, 0, n)
                 if not speed - before <= most and 0.0 < at[k + 1] - at[k] <= longest:
-                    most, best = speed - before, k
+                    most, best, until = speed - before, k, top
             if best >= 0:
-                weigh(m, best, at, x, rates, pushes, work, out)
+                rounding = ROUNDING * sqrt(form(m.M, after(rates, until * n), n))
+                weigh(m, best, at, x, rates, pushes, rounding, work, out)
     return found
 
 
 def weigh(
-    m: Model, k: int, t: Doubles, q: Doubles, v: Doubles, impulse: Doubles, work: Doubles, out: Doubles
+    m: Model,
+    k: int,
+    t: Doubles,
+    q: Doubles,
+    v: Doubles,
+    impulse: Doubles,
+    rounding: float,
+    work: Doubles,
+    out: Doubles,
 ) -> None:
-    """The step after the state k, into `out` where its energy is a larger multiple of what it may be than before."""
+    """The step after the state k, into `out` where its energy is a larger multiple of what it may be than before.
+
+    rounding : speed sqrt(v^T M v) that is none beside the fastest until then, as of what an impact brought to rest
+    """
     n, n_c, h, strongest, pushed = m.n_q, m.n_c, t[k + 1] - t[k], 0.0, 0.0
     G, rate, fastest = work, after(work, n_c * n), after(work, n_c * n + n_c)
     x, f = after(work, n_c * (n + 2)), after(work, n_c * (n + 2) + 2 * n)
@@ -69,7 +86,7 @@ def weigh(
     for c in range(n_c):
         pushed += abs(impulse[(k + 1) * n_c + c]) * fastest[c]
     start, end = 0.5 * form(m.M, after(v, k * n), n), 0.5 * form(m.M, after(v, (k + 1) * n), n)
-    speed = sqrt(2.0 * start) + h * sqrt(strongest)
+    speed = sqrt(2.0 * start) + h * sqrt(strongest) + rounding
     allowed = 0.5 * speed * speed + pushed
     if not end <= out[0] * allowed:
         out[0], out[1], out[2], out[3] = end / allowed, k, start, end

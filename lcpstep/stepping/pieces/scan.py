@@ -25,6 +25,7 @@ from lcpstep.stepping.pieces.state import Plan, Work
 NOWHERE = -2
 PARTS = 4  # intervals of a piece
 FALLS = 3.0  # of a force: by how much it is larger beside a turn; a parabola five times
+WIDER = 16.0  # each time: how far on a force is looked at that may pull for but a moment
 SOON = 1e-3  # of a piece: what has been decided at its base is not decided again before
 LOW = 1e9  # times the slack: rounding of positions is much of gaps below it
 BRIEF = 1.0 / 32.0  # of the longest piece: the mean velocity of so short a time is exact to rounding
@@ -196,10 +197,39 @@ def brief_release(
             force_at(m, plan, w, z, t, x)
             z.turn.take(w.p[c])
         if w.p[c] < 0.0 and pulls(m, w, c):
-            tau = vanishing(m, plan, w, z, t, from_probe(w, end, probe), x, w.p[c], c)
-            if tau < first or found == NOBODY:
+            force = w.p[c]
+            tau = vanishing(m, plan, w, z, t, from_probe(w, end, probe), x, force, c)
+            if (tau < first or found == NOBODY) and rises(m, plan, w, z, t, tau, x, end, force, c):
                 found, first = c, tau
     return found, first
+
+
+def rises(
+    m: Model,
+    plan: Plan,
+    w: Work,
+    z: Polynomial,
+    t: float,
+    tau: float,
+    x: float,
+    end: float,
+    force: float,
+    c: int,
+) -> bool:
+    """Whether contact c, whose force vanishes at tau and pulls at x, is let go by more than rounding of its gap.
+
+    A force that touches zero pulls for a moment by the error of the polynomial. Until it presses again a parabola is
+    deeper than what is seen of it by a quarter of `WIDER` at most.
+    """
+    span, lowest = x - tau, force
+    w.p[c] = force
+    while w.p[c] <= 0.0:
+        span *= WIDER
+        if tau + span >= end or -0.125 * WIDER * w.W[c * w.n_c + c] * lowest * span * span > plan.slack:
+            return True
+        force_at(m, plan, w, z, t, tau + span)
+        lowest = min(lowest, w.p[c])
+    return False
 
 
 def from_probe(w: Work, end: float, probe: int) -> float:
