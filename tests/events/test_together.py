@@ -64,6 +64,19 @@ def test_elastic_beads_that_meet_by_threes_pass_through_one_another():
     np.testing.assert_allclose(run.q, scene.exact(run.t)[0], rtol=0, atol=1e-13)
 
 
+@pytest.mark.parametrize("method", [EventDriven(), Located(0.01), Located(0.01, 4)])
+@pytest.mark.parametrize("place", [0.0, 0.1, 1.0 / 3.0])
+@pytest.mark.parametrize("v", [(4, 1, -1), (4, 1, -1, -2), (3, 2, 1, 0), tuple(range(20, -20, -3))])
+def test_elastic_beads_that_meet_at_one_place_pass_through_whether_rounding_leaves_zero_there(
+    v, place, method
+):
+    """In whole numbers their gaps are zero together, elsewhere they are but nearly so."""
+    n, v = len(v), np.array(v, dtype=float)
+    contacts = LinearContacts(G=np.diff(np.eye(n), axis=0), restitution=1.0)
+    run = simulate(Scene(LinearSystem(M=np.eye(n)), place - v, v, (0.0, 2.0), contacts), method)
+    np.testing.assert_allclose(run.v[-1], np.sort(v), rtol=0, atol=1e-12)
+
+
 @pytest.mark.parametrize("method", [EventDriven(), Located(0.01)])
 def test_unlike_beads_that_meet_by_threes_depend_on_no_numbering(method):
     """Two bodies come to a third from both sides; where they meet, rounding cannot tell who is first."""
