@@ -114,3 +114,20 @@ def test_walls_that_close_in_have_no_forces_and_no_paradox(mu):
         q0=[0.0, 0.0], v0=[1.0, 0.0], t_span=(0.0, 0.1),
     )  # fmt: skip
     assert simulate(scene, EventDriven()).status not in (Status.DONE, Status.PAINLEVE_INCONSISTENT)
+
+
+@pytest.mark.parametrize(
+    "method", [EventDriven(), Located(0.01), Located(0.01, 4), Located(0.01, tolerance=1e-6)]
+)
+def test_a_disc_that_a_blow_leaves_in_a_rough_corner_rests_there(method):
+    """From mu = 1 on nothing that turns in the corner has forces; what rounding leaves of the blow does not turn."""
+    radius, walls = 0.25, [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]
+    tangents = [[1.0, 0.0, radius], [0.0, 1.0, -radius], [0.0, 1.0, radius]]
+    contacts = LinearContacts(
+        G=walls, offset=[-radius, -radius, 1.0 - radius], friction=Coulomb(5.0, tangents, restitution=1.0)
+    )
+    system = LinearSystem(M=np.diag([1.0, 1.0, radius**2]), force=[0.0, -1.0, 0.0])
+    run = simulate(Scene(system, [0.75, 0.75, 0.0], [2.0, 1.0, 8.0], (0.0, 3.0), contacts), method)
+    assert run.status.name == "DONE"
+    np.testing.assert_allclose(run.q[-1, :2], radius, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(run.v[-1], 0.0, rtol=0, atol=1e-12)
