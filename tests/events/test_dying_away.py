@@ -68,3 +68,15 @@ def test_beads_without_room_come_to_rest_where_rounding_contradicts_the_last_blo
         constant=(0.0, 0.0, -9.81), family="beads",
     )  # fmt: skip
     at_rest(beads.scene(), method, beads.q0)
+
+
+@pytest.mark.parametrize("tolerance", [1e-5, 1e-7, 1e-9])
+def test_bodies_that_come_to_rest_where_their_springs_do_stay_there(tolerance):
+    """Plastic beads end on the floor, at the ends of their springs: what is left of the forces has no digits."""
+    G = np.vstack([np.diff(np.eye(5), axis=0), np.eye(5)[0]])
+    system = LinearSystem(M=np.eye(5), K=np.diag([1.0, 4.0, 1.0, 1.0, 1.0]))
+    contacts = LinearContacts(G=G, restitution=0.0)
+    scene = Scene(system, [2.0, 2.0, 4.0, 4.0, 6.0], [1.0, 2.0, 2.0, -2.0, -1.0], (0.0, 3.0), contacts)
+    run = simulate(scene, EventDriven(tolerance, tolerance))
+    assert run.status.name == "DONE"
+    np.testing.assert_allclose(run.q[-1], 0.0, rtol=0, atol=1e-300)

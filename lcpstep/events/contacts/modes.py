@@ -47,6 +47,9 @@ from lcpstep.pointers import abs, after, max
 
 # Of accelerations that hang together: as much solving for the forces leaves of one that is none
 LEANING = 1e-12
+LEAST = (
+    2.0**-960
+)  # of numbers that have their digits in products too: below it bodies at rest have no accelerations
 
 
 def decide(s: Rubbing) -> int:
@@ -66,7 +69,8 @@ def decide(s: Rubbing) -> int:
             return DONE
         fill(s.rows, n_a, n_f)
         for a in range(n_a + n_f):
-            s.problem.rate[a] = acceleration_on_joints(s.rows, row_of(s.rows, a, n_a), s.a)
+            rate = acceleration_on_joints(s.rows, row_of(s.rows, a, n_a), s.a)
+            s.problem.rate[a] = rate if abs(rate) > LEAST else 0.0
         code = find_forces(s, n_a, n_f)
         if code == PAINLEVE_INCONSISTENT and begins and creeps(s):
             continue

@@ -16,6 +16,7 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
 from lcpstep.pointers import abs, inf, max
 from lcpstep.stepping.pieces.codes import GROUND, IMPACT, ROUNDING, SAME_TIME
+from lcpstep.stepping.pieces.impulses import SMALL
 from lcpstep.stepping.pieces.state import Plan, Work
 
 CLOSE = 1e-9  # of a step: impacts of a contact as close as this,
@@ -87,7 +88,8 @@ def next_zero(w: Work, c: int, end: float) -> float:
 def ordinary(m: Model, plan: Plan, w: Work, c: int, tau: float) -> bool:
     """Whether contact c strikes at tau, alone among its neighbours, and rebounds for longer than a moment.
 
-    A neighbour that touches, not having been struck, may rest after it, or strike with what touches it beyond.
+    A neighbour that touches and parts strikes next where its own neighbours do now, if it has not struck yet; or the
+    blow leaves it at rest, and closed.
     """
     h, r, s = plan.h, m.restitution[c], tau - w.since[c]
     u = w.rate[c] + 2.0 * s * w.half[c]
@@ -99,7 +101,8 @@ def ordinary(m: Model, plan: Plan, w: Work, c: int, tau: float) -> bool:
         if d != c and w.W[d * w.n_c + c] != 0.0:
             s = tau - w.since[d]
             g, v = w.gap[d] + s * (w.rate[d] + s * w.half[d]), w.rate[d] + 2.0 * s * w.half[d]
-            if g <= plan.slack and (v < 0.0 or w.last[d] < 0.0):
+            change = -(1.0 + r) * u * w.W[d * w.n_c + c] / w.W[c * w.n_c + c]
+            if g <= plan.slack and (v < 0.0 or w.last[d] < 0.0 or abs(v + change) <= SMALL * abs(change)):
                 return False
     return True
 
