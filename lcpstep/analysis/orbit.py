@@ -91,22 +91,38 @@ class PeriodicOrbit:
         run = self.run()
         start, end = run.scene.t_span
         times = np.linspace(start, end, SAMPLES * self.periods + 1)
-        gaps = np.array(
-            [self.scene.gap(t, q, v)[0][0] for t, q, v in zip(times, *run.at(times), strict=True)]
+        gaps = np.array([run.scene.gap(t, q, v)[0] for t, q, v in zip(times, *run.at(times), strict=True)])
+        struck = [run.impacts.time[run.impacts.contact == i] for i in range(run.scene.n_c)]
+        return min(
+            (self._least_gap(run.at, i, a, b) for i, a, b in _lows(times, gaps, struck)), default=np.inf
         )
-        inner = np.flatnonzero((gaps[1:-1] < gaps[:-2]) & (gaps[1:-1] <= gaps[2:])) + 1
-        free = [k for k in inner if not np.any((self.time > times[k - 1]) & (self.time < times[k + 1]))]
-        return min((self._least_gap(run.at, times[k - 1], times[k + 1]) for k in free), default=np.inf)
 
-    def _least_gap(self, at: Callable[[float], tuple[Array, Array]], a: float, b: float) -> float:
+    def _least_gap(
+        self, at: Callable[[float], tuple[Array, Array]], contact: int, a: float, b: float
+    ) -> float:
         from scipy.optimize import minimize_scalar
 
         def gap(t: float) -> float:
-            return float(cast(Scene, self.scene).gap(t, *at(t))[0][0])
+            return float(cast(Scene, self.scene).gap(t, *at(t))[0][contact])
 
         return float(
             minimize_scalar(gap, bounds=(a, b), method="bounded", options={"xatol": 1e-9 * (b - a)}).fun
         )
+
+
+def _lows(times: Array, gaps: Array, struck: list[Array]) -> list[tuple[int, float, float]]:
+    """Contact, and times between which its gap turns back without an impact; the motion is periodic."""
+    last, found = len(times) - 1, []
+    for i, gap in enumerate(gaps.T):
+        lower = (gap < np.append(gap[-2], gap[:-1])) & (gap <= np.append(gap[1:], gap[1]))
+        hit = np.unique(
+            np.searchsorted(times, struck[i]).clip(1, last)
+        )  # numbers of the intervals with impacts
+        for k in np.flatnonzero(lower):
+            beside = {k or last, k % last + 1}  # the intervals before and after
+            if not beside & set(hit.tolist()):
+                found.append((i, float(times[max(k - 1, 0)]), float(times[min(k + 1, last)])))
+    return found
 
 
 def periodic_orbit(
@@ -116,7 +132,7 @@ def periodic_orbit(
 
     Parameters
     ----------
-    scene : lagrangian.Scene with a period and one contact, or HybridScene with a period
+    scene : lagrangian.Scene or HybridScene, with a period
     x : (2 n_q,)   guess of the state (q, v), or (n_x,), at the time phase x period
     n : periods of the forcing after which it repeats
     method : EventDriven() where not given. With Moreau derivatives are made of its impacts where the

@@ -7,7 +7,7 @@ branch ends. Source: G. Osorio, Complex Behavior in Impacting Systems, sections 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -27,6 +27,7 @@ from lcpstep.maps.batch import Periods
 Array = NDArray[np.float64]
 REMEMBERED = 32  # maps and motions that are asked for again at once
 GRAZING = 1e-2  # a branch that ends with a contact this soft, relative to the others, ends by grazing
+AT_SECTION = 1e-3  # of the period: an impact this near to the section, where a branch ends, has reached it
 CLEARLY = 3.0  # times as soft: the difference of two orbits that is no rounding
 
 
@@ -134,9 +135,20 @@ def continue_orbit(
         # where an impact comes or goes beside the end, no differences tell the derivative by the parameter
         reach = SPOILT * PARAMETER_STEP * (p_range[1] - p_range[0])
         changes = {_impacts(followed, value + step, x) for step in (-reach, 0.0, reach)}
-        if _grazes(orbits[-1]) or (p_end != value and len(changes) > 1):
+        if _grazes(orbits[-1]) or (0.0 < abs(p_end - value) <= 2.0 * reach and len(changes) > 1):
             special.append(Special("grazing", p_end, x, branch.multipliers[-1]))
+        elif _from_section(orbits[-1]) < AT_SECTION:
+            branch = replace(
+                branch,
+                ended=f"{branch.ended}: an impact reaches the section, start again from the last orbit",
+            )
     return OrbitBranch(branch, phase, orbits, tuple(special))
+
+
+def _from_section(orbit: PeriodicOrbit) -> float:
+    """Share of the period from the section to the impact nearest to it; infinite where there is none."""
+    away = np.abs((orbit.phases - orbit.phase + 0.5) % 1.0 - 0.5)
+    return float(np.min(away, initial=np.inf))
 
 
 def _impacts(

@@ -45,3 +45,46 @@ def test_an_impact_that_becomes_a_graze_ends_its_branch_in_few_points():
     assert grazing.kind == "grazing"
     assert grazing.p == pytest.approx(far, rel=1e-6)
     assert len(branch.orbits) < 100
+
+
+def test_a_second_contact_that_is_about_to_be_touched_ends_a_branch():
+    # A mass strikes the wall before it and has another behind it. As long as that is not touched the orbit does not
+    # know of it, and it is grazed where it stands at the orbit's lowest point.
+    def make(behind):
+        block = LinearSystem(M=1.0, C=0.1, K=1.0, force=Harmonic(cosine=1.0, omega=2.0))
+        walls = LinearContacts(G=[[-1.0], [1.0]], offset=[0.0, behind], restitution=0.8)
+        return Scene(block, 0.0, 0.0, (0.0, math.pi), contacts=walls, period=math.pi)
+
+    orbit = periodic_orbit(make(9.0), [-2.6596965, 2.58919638])
+    lowest = float(np.min(orbit.run().at(np.linspace(0.0, math.pi, 100001))[0]))
+    assert orbit.name == "O(1, 1)"
+    assert orbit.clearance() == pytest.approx(9.0 + lowest, abs=1e-8)
+    branch = continue_orbit(make, orbit, 9.0, (1.0, 9.5), forward=False)
+    assert [s.kind for s in branch.special] == ["grazing"]
+    assert branch.special[0].p == pytest.approx(-lowest, abs=1e-8)
+
+
+@pytest.mark.slow
+def test_an_impact_that_reaches_the_section_is_no_graze():
+    # Two masses, the second between two walls: the motion mirrored is another orbit, so both ways from here lead to
+    # grazes at one frequency. On one of them an impact reaches the section before.
+    def make(w):
+        masses = LinearSystem(
+            M=np.eye(2), C=[[0.4, -0.2], [-0.2, 0.2]], K=[[2.0, -1.0], [-1.0, 1.0]],
+            force=Harmonic(cosine=[1.0, 0.0], omega=w),
+        )  # fmt: skip
+        walls = LinearContacts(G=[[0.0, -1.0], [0.0, 1.0]], offset=[0.2, 0.2], restitution=0.8)
+        return Scene(
+            masses, [0, 0], [0, 0], (0.0, 10.0), contacts=walls, period=2 * math.pi / w, parameters={"w": w}
+        )
+
+    orbit = periodic_orbit(make(1.5), [-0.754041863, -0.108500295, 1.846346077, 0.140288167])
+    up, down = (continue_orbit(make, orbit, 1.5, (1.2, 1.6), forward=forward) for forward in (True, False))
+    assert "an impact reaches the section" in up.points.ended
+    assert [s.kind for s in up.special] == ["flip"]
+    last = up.orbits[-1]
+    on = continue_orbit(make, last, last.scene.parameters["w"], (1.2, 1.6), forward=False)
+    assert [s.kind for s in on.special] == ["grazing"]
+    assert [s.kind for s in down.special] == ["flip", "grazing"]
+    assert on.special[0].p == pytest.approx(down.special[1].p, abs=1e-7)
+    assert up.special[0].p == pytest.approx(down.special[0].p, abs=1e-9)
