@@ -33,18 +33,20 @@ from lagrangian import HybridScene, Scene, checks
 from lcpstep.analysis.attractors import Attractors, attractors, with_new
 from lcpstep.analysis.cells import OBSTACLE, UNKNOWN, Cells, Grid
 from lcpstep.analysis.neighbourhoods import neighbourhoods
+from lcpstep.analysis.search import search
 from lcpstep.analysis.starts import outside, random_starts
 from lcpstep.dataset import Progress, labelled, provenance
 from lcpstep.described import checksum
 from lcpstep.events import EventDriven
-from lcpstep.maps.batch import INSIDE, Targets, periodic, periods
+from lcpstep.maps.batch import INSIDE, Targets, at_once, periodic, periods
 from lcpstep.simulation import Method
 from lcpstep.sweep import Arrays, sweep
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 PARTS = 32  # of a stage, at most, for every part is a file
-LEAST = 8192  # cells of a part
+LEAST, SHORT = 8192, 1024  # cells of a part that are followed over a period, and to their end
+SLOW = 32  # the same of scenes whose runs are simulated one after another
 CORE = 0.1  # the share of cells up to which images of images are followed to their end
 ROUNDS, FEW = (
     48,
@@ -118,13 +120,16 @@ def basins(
             raise ValueError(
                 "lowest, highest: the rectangle lies inside of the obstacle, as far as was looked"
             )
-        known = attractors(scene, method, starts, phase=phase, transient=longest)
+        known = search(scene, method, starts, phase, longest)
     grid = Grid(low, high, n_q, n_v)
     targets = neighbourhoods(scene, method, known.found, phase, longest, seed)
     study = _Study(scene, method, grid, targets, phase, longest)
     inputs = study.inputs(known) | {"scene_sha256": checksum(scene)}
 
-    def follow(name: str, work: Callable[..., Any], x: Array, least: int) -> Arrays:
+    fast = at_once(scene, method, targets[0])
+
+    def follow(name: str, work: Callable[..., Any], x: Array) -> Arrays:
+        least = (SHORT if work == study.to_the_end else LEAST) if fast else SLOW
         size = max(least, -(-len(x) // PARTS))
         done = sweep(
             work,
@@ -144,17 +149,17 @@ def basins(
         more = attractors(scene, method, grid.centres(some), phase=phase, transient=longest)
         known = with_new(known, more)
         study = replace(study, targets=neighbourhoods(scene, method, known.found, phase, longest, seed))
-        cells.take(rest, follow("second-look", study.to_the_end, cells.x[rest], LEAST // 8))
-    errors, looked_at = _wrong(study, cells.label, sample, seed)
-    if errors > WRONG * looked_at:  # basins finer than the cells
+        cells.take(rest, follow("second-look", study.to_the_end, cells.x[rest]))
+    seen = _sample(cells.label, sample, seed)
+    truth = follow("sample", study.to_the_end, grid.centres(seen))["label"] if len(seen) else np.zeros(0)
+    if np.sum(truth != cells.label[seen]) > WRONG * len(seen):  # basins finer than the cells
         outer = np.flatnonzero(cells.label != OBSTACLE)
-        cells.take(outer, follow("one-by-one", study.to_the_end, cells.x[outer], LEAST // 8))
-        errors, looked_at = _wrong(study, cells.label, sample, seed)
-    wrong = _upper_bound(errors, looked_at)
+        cells.take(outer, follow("one-by-one", study.to_the_end, cells.x[outer]))
+    wrong = _upper_bound(int(np.sum(truth != cells.label[seen])), len(seen))
     return study.dataset(known, cells.label, wrong, seed, sample)
 
 
-def _map_cells(study: _Study, follow: Callable[[str, Any, Array, int], Arrays]) -> Cells:
+def _map_cells(study: _Study, follow: Callable[[str, Any, Array], Arrays]) -> Cells:
     """All cells with their labels; `follow` has the work done on states, under a name that it has among the parts."""
     grid = study.grid
     n = grid.n_q * grid.n_v
@@ -162,9 +167,8 @@ def _map_cells(study: _Study, follow: Callable[[str, Any, Array, int], Arrays]) 
     followed = np.zeros(n, dtype=bool)  # to the end
 
     def carry_on(name: str, some: Ints, work: Callable[..., Any]) -> None:
-        to_the_end = work == study.to_the_end
-        cells.take(some, follow(name, work, cells.x[some], LEAST // 8 if to_the_end else LEAST))
-        followed[some] = to_the_end
+        cells.take(some, follow(name, work, cells.x[some]))
+        followed[some] = work == study.to_the_end
 
     carry_on("images", np.arange(n), study.first_images)
     core = cells.core()
@@ -263,15 +267,11 @@ class _Study:
         return 1.96 * 0.5 * math.sqrt(float(np.sum(edge))) / admissible
 
 
-def _wrong(study: _Study, label: Ints, sample: int, seed: int) -> tuple[int, int]:
-    """How many labels are wrong, and of how many: cells followed one by one from their centres."""
+def _sample(label: Ints, sample: int, seed: int) -> Ints:
+    """The cells that are followed one by one to see how many labels are wrong."""
     candidates = np.flatnonzero(label != OBSTACLE)
     sample = min(int(checks.number("sample", sample, least=0)), len(candidates))
-    cells = np.random.default_rng([seed, 2]).choice(candidates, sample, replace=False)
-    if sample == 0:
-        return 0, 0
-    truth, _ = study.to_the_end(study.grid.centres(cells), None)
-    return int(np.sum(truth["label"] != label[cells])), sample
+    return np.random.default_rng([seed, 2]).choice(candidates, sample, replace=False)
 
 
 def _upper_bound(errors: int, sample: int) -> float:

@@ -14,10 +14,10 @@ from lcpstep.cli.studies import (
     finish,
     keeps_parts,
     method_of,
-    parts_bar,
     stopped,
     study_arguments,
     study_scene,
+    work_bar,
 )
 from lcpstep.maps.batch import periodic
 from lcpstep.plot import basins as pictures
@@ -64,11 +64,11 @@ def run_basin(options: argparse.Namespace) -> int:
     n_q, n_v = (checks.count("--grid", n) for n in options.grid)
     names = files(options, "basins")
     keeps_parts(options)
-    with parts_bar("basins") as progress:
+    with work_bar("basins"):
         data = basins(
             scene, [position[0], velocity[0]], [position[1], velocity[1]], (n_q, n_v),
             method=method_of(options), phase=options.phase, longest=options.longest, sample=options.sample,
-            seed=options.seed, jobs=options.jobs, out=options.out / PARTS, progress=progress,
+            seed=options.seed, jobs=options.jobs, out=options.out / PARTS,
         )  # fmt: skip
     finish(
         options,

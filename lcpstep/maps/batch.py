@@ -136,12 +136,8 @@ def periods(
     task = _task(scene, starts, n, drop, section(phase) * scene.period, most, targets)
     if isinstance(scene, HybridScene):
         return _answer(modes.run_all(scene, method, task, tangents))
-    fast: follow.Follower | lockstep.Lockstep | None = None
-    if isinstance(method, EventDriven) and scene.n_c <= 1:
-        fast = follow.Follower(scene, method)
-    elif isinstance(method, Moreau) and targets is None:
-        fast = lockstep.Lockstep(scene, method)
-    if fast is not None and fast.usable:
+    fast = _fast(scene, method, targets)
+    if fast is not None:
         if tangents and isinstance(fast, follow.Follower):
             task = task._replace(tangents=np.full((len(task.starts), n - drop, 2, 2), np.nan))
         fast.run(task, strict)
@@ -150,6 +146,22 @@ def periods(
     if tangents and not task.tangents.shape[1]:
         task = task._replace(tangents=_from_logs(scene, task))
     return _answer(task)
+
+
+def at_once(scene: Scene | HybridScene, method: Method, targets: Targets | None) -> bool:
+    """Whether a kernel follows many runs, each in microseconds a period; others take hundreds."""
+    return isinstance(scene, HybridScene) or _fast(scene, method, targets) is not None
+
+
+def _fast(
+    scene: Scene, method: Method, targets: Targets | None
+) -> follow.Follower | lockstep.Lockstep | None:
+    fast: follow.Follower | lockstep.Lockstep | None = None
+    if isinstance(method, EventDriven) and scene.n_c <= 1:
+        fast = follow.Follower(scene, method)
+    elif isinstance(method, Moreau) and targets is None:
+        fast = lockstep.Lockstep(scene, method)
+    return fast if fast is not None and fast.usable else None
 
 
 def _answer(task: Task) -> Periods:
