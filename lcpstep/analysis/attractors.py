@@ -36,6 +36,7 @@ from lcpstep.simulation import Method
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
+AT_SECTION = 1e-9  # of the period: rounding decides on which side of the section such an impact is
 
 
 def attractors(
@@ -147,6 +148,9 @@ def unsettled(P: PeriodMap, found: Attractor, states: Array, transient: int, lon
     rate = found.lyapunov.largest
     if not -math.inf < rate < -found.lyapunov.least:
         return _later(P, found, longest)
+    away = np.abs((found.impact_phase - P.phase + 0.5) % 1.0 - 0.5)
+    if np.any(away < AT_SECTION):
+        return "an impact falls on the section, now before it and now after it: take another phase"
     return (
         f"neighbours come together (exponent {rate:.3g} per period), so it ends in a periodic motion, but does "
         f"not repeat within {longest} periods: take a larger longest, or a longer transient"

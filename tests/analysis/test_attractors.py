@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from lagrangian.scenes import cam_follower, driven_bilinear_oscillator
+from lagrangian.scenes import ball_on_table, cam_follower, driven_bilinear_oscillator
 from lcpstep import EventDriven, Moreau
 from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.bifurcation import bifurcation
@@ -187,3 +187,14 @@ def test_a_motion_that_was_not_waited_for_is_not_named_but_says_so():
     ).found
     assert {a.name for a in found} == {"unsettled", "O(1, 2)"}  # the other one is an O(3, 8)
     assert all("does not repeat within 2 periods" in a.unsettled for a in found if not a.periods)
+
+
+def test_an_impact_on_the_section_is_told_from_a_long_transient():
+    # The table of this scene is turned so that the ball of its periodic orbit lands at t = 0
+    scene = ball_on_table(amplitude=0.0095)
+    starts = random_starts([[0.0, -0.8], [0.06, 0.8]], 20, seed=0)
+    reasons = {a.unsettled for a in attractors(scene, EventDriven(), starts).found if not a.periods}
+    assert reasons == {"an impact falls on the section, now before it and now after it: take another phase"}
+    moved = attractors(scene, EventDriven(), starts, phase=0.3).found
+    assert "O(1, 1)" in [a.name for a in moved]
+    assert next(a for a in moved if a.name == "O(1, 1)").lyapunov.largest == pytest.approx(np.log(0.5))
