@@ -23,6 +23,7 @@ from lcpstep.simulation import Method, fitted, simulate
 
 Array = NDArray[np.float64]
 SAMPLES = 64  # of the gap per period, between impacts
+CLOSED = 1e-12  # a gap below this, relative to the motion, is closed
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,13 +171,28 @@ def _started(scene: Any, x: Array, span: tuple[float, float]) -> Any:
 
 
 def quiet_phase(orbit: PeriodicOrbit) -> float:
-    """The phase that is farthest from every impact of the orbit: a good place for a section."""
-    phases = np.sort(orbit.phases)
+    """The phase that is farthest from every impact of the orbit, in flight: a good place for a section."""
+    phases = orbit.phases
+    rests = orbit.sticks and isinstance(orbit.scene, Scene)
+    run = orbit.run() if rests else None
+    if run is not None:  # a state on the obstacle is inside of it at other values of a parameter
+        phases = np.append(phases, run.impacts.time / orbit.scene.period % 1.0)
+    phases = np.unique(phases)
     if len(phases) == 0:
         return orbit.phase
     pauses = np.diff(np.append(phases, phases[0] + 1.0))
-    k = int(np.argmax(pauses))
-    return float((phases[k] + 0.5 * pauses[k]) % 1.0)
+    middles = (phases + 0.5 * pauses) % 1.0
+    if run is not None:
+        flies = [_flies(run, (middle - orbit.phase) % 1.0 * orbit.scene.period) for middle in middles]
+        pauses = np.where(flies, pauses, 0.0) if np.any(flies) else pauses
+    return float(middles[int(np.argmax(pauses))])
+
+
+def _flies(run: Any, later: float) -> bool:
+    """Whether no contact is closed so much later than the start of a run."""
+    t = run.t[0] + later
+    q, v = run.at(t)
+    return bool(np.all(run.scene.gap(t, q, v)[0] > CLOSED * max(1.0, float(np.max(np.abs(run.q))))))
 
 
 def moved(orbit: PeriodicOrbit, phase: float) -> PeriodicOrbit:

@@ -130,7 +130,8 @@ def continue_orbit(
         s._replace(kind=s.kind.split(" ")[0] if s.kind.startswith("corner") else s.kind)
         for s in branch.special
     ]
-    if branch.ended.startswith("no point") and isinstance(orbit.scene, Scene):
+    # where a motion chatters its last impacts are soft everywhere, and no sign of a graze
+    if branch.ended.startswith("no point") and isinstance(orbit.scene, Scene) and not orbits[-1].sticks:
         p_end, (value, x) = _grazing_parameter(orbits, branch.p), (float(branch.p[-1]), branch.x[-1])
         # where an impact comes or goes beside the end, no differences tell the derivative by the parameter
         reach = SPOILT * PARAMETER_STEP * (p_range[1] - p_range[0])

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+from lagrangian.scenes import ball_on_table
+from lcpstep import EventDriven
 from lcpstep.analysis.continuation import continue_point
 from lcpstep.analysis.orbits import continue_orbit, periodic_orbit
+from lcpstep.maps import StroboscopicMap, iterate
 
 
 @pytest.mark.parametrize("forward", [True, False])
@@ -88,3 +91,25 @@ def test_an_impact_that_reaches_the_section_is_no_graze():
     assert [s.kind for s in down.special] == ["flip", "grazing"]
     assert on.special[0].p == pytest.approx(down.special[1].p, abs=1e-7)
     assert up.special[0].p == pytest.approx(down.special[0].p, abs=1e-9)
+
+
+def test_a_ball_that_chatters_and_rests_is_followed_until_its_chattering_is_cut_off():
+    def P(amplitude, phase=0.0):
+        return StroboscopicMap(ball_on_table(amplitude=amplitude), EventDriven(), phase=phase)
+
+    x = iterate(P(0.009), [0.05, 0.0], 60)[-1]
+    orbit = periodic_orbit(ball_on_table(amplitude=0.009), x)
+    assert orbit.name == "O(1, chattering)"
+    branch = continue_orbit(
+        lambda amplitude: ball_on_table(amplitude=amplitude), orbit, 0.009, (0.0088, 0.02)
+    )
+    # There the ball is thrown off before it has come to rest: that is no graze, soft as the last impacts are
+    assert branch.special == ()
+    assert branch.points.ended.startswith("no point")
+    end = branch.points.p[-1]
+    assert 0.012 < end < 0.014
+    before, after = (
+        P(end + step, branch.phase).follow(branch.points.x[-1], 9).ends for step in (-1e-6, 1e-6)
+    )
+    assert np.all(before == 1)
+    assert np.all(after == 0)
