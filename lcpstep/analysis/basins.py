@@ -111,6 +111,7 @@ def basins(
         raise ValueError(f"shape: expected two numbers of cells, along q and along v, got {shape!r}")
     n_q, n_v = (checks.count("shape", n) for n in shape)
     longest, method = checks.count("longest", longest), method or EventDriven()
+    sample = int(checks.number("sample", sample, least=0))
     complete = known is None
     if known is not None:
         checks.instance("known", known, Attractors)
@@ -270,8 +271,7 @@ class _Study:
 def _sample(label: Ints, sample: int, seed: int) -> Ints:
     """The cells that are followed one by one to see how many labels are wrong."""
     candidates = np.flatnonzero(label != OBSTACLE)
-    sample = min(int(checks.number("sample", sample, least=0)), len(candidates))
-    return np.random.default_rng([seed, 2]).choice(candidates, sample, replace=False)
+    return np.random.default_rng([seed, 2]).choice(candidates, min(sample, len(candidates)), replace=False)
 
 
 def _upper_bound(errors: int, sample: int) -> float:

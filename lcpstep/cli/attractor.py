@@ -77,6 +77,8 @@ def run_attractor(options: argparse.Namespace) -> int:
     names = files(options, "attractors")
     number = checks.count("--starts", options.starts)
     starts = outside(scene, random_starts(box(options, scene), number, options.seed), options.phase)
+    if len(starts) == 0:
+        raise ValueError("--box: it lies inside of the obstacle, as far as was looked")
 
     longest = min(LONGEST, options.window // 2) if options.longest is None else options.longest
     window = max(options.window, 2 * longest)

@@ -104,3 +104,9 @@ def test_cells_that_are_coarser_than_the_basins_share_no_labels():
         repeats = np.max(np.abs(run.states[0, 1] - run.states[0, 0])) < 1e-6
         orbits.setdefault(int(data["label"].values[cell // 40, cell % 40]), set()).add(bool(repeats))
     assert orbits == {0: {True}, 1: {False}}  # O(1, 1) and O(3, 3)
+
+
+def test_a_wrong_sample_is_refused_before_anything_is_computed(monkeypatch):
+    monkeypatch.setattr(module, "search", None)  # what comes first
+    with pytest.raises(ValueError, match=r"sample: expected a value in \[0, inf\], got -1"):
+        basins(impact_oscillator(), [-1.5, -2.0], [0.0, 2.0], (4, 4), sample=-1)

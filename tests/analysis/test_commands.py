@@ -153,6 +153,10 @@ def test_parts_of_another_run_are_not_mixed_with_this_one(capsys, tmp_path):
         (["bifurcation", "impact-oscillator"], "those of impact-oscillator are zeta, omega"),
         (["attractor", "impact-oscillator"], "--box"),
         (
+            ["attractor", "impact-oscillator", "--box", "1", "2", "-1", "1"],
+            "--box: it lies inside of the obstacle",
+        ),
+        (
             ["attractor", "cam-follower", "--theta", "1"],
             "--theta: event-driven has none, it belongs to moreau",
         ),
