@@ -27,11 +27,11 @@ def search(
     scene: Scene | HybridScene, method: Method, starts: Array, phase: float, longest: int
 ) -> Attractors:
     """The attractors that these starts go to within `longest` periods, the one with the largest share first."""
+    if len(starts) <= FIRST or not isinstance(method, EventDriven):  # time-stepping scatters what it repeats
+        return attractors(scene, method, starts, phase=phase, transient=longest)
     first = attractors(scene, method, starts[:FIRST], phase=phase, transient=longest)
-    if len(starts) <= FIRST:
-        return first
     near, owner = smallest(first.found)
-    if len(owner) == 0 or not isinstance(method, EventDriven):  # time-stepping scatters what it repeats
+    if len(owner) == 0:
         return attractors(scene, method, starts, phase=phase, transient=longest)
     others = starts[FIRST:]
     went = periods(scene, method, others, longest, drop=longest, phase=phase, targets=near).reached
