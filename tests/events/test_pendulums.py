@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -58,6 +59,25 @@ def test_a_point_that_a_rod_leads_along_the_floor_swings_freely(tolerance, angle
     assert len(m.impacts) == 0
     (phi, _) = swung(angle, 3.0).y[:, -1]
     np.testing.assert_allclose(m.q[-1], [math.sin(phi), -math.cos(phi)], rtol=0, atol=tolerance + 1e-10)
+
+
+@pytest.mark.parametrize("tolerance", [1e-12, 1e-10, 1e-8])
+@pytest.mark.parametrize("normal", [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.6, 0.8)])
+@pytest.mark.parametrize(("weight", "speed"), [(0.0, 3.0), (0.0, 20.0), (10.0, 7.0), (10.0, 20.0)])
+def test_a_point_that_goes_round_on_a_rod_passes_a_wall_that_its_circle_touches(
+    weight, speed, normal, tolerance
+):
+    """Turn for turn it touches the wall at full speed, by no more than errors of its gap."""
+    low = (0.0, -1.0) if normal[0] else (1.0, 0.0)
+    scene = Scene(
+        LinearSystem(np.eye(2), force=[0.0, -weight]), low, speed * np.array([-low[1], low[0]]), (0.0, 4.0),
+        joints=Joints(1, rod, rod_row), contacts=LinearContacts([normal], 1.0, 0.5),
+    )  # fmt: skip
+    run = simulate(scene, EventDriven(tolerance, tolerance))
+    energy = 0.5 * np.sum(run.v**2, axis=1) + weight * run.q[:, 1]
+    assert np.ptp(energy) <= 20.0 * tolerance * speed**2
+    free = simulate(replace(scene, contacts=None), EventDriven())
+    np.testing.assert_allclose(run.q[-1], free.q[-1], rtol=0, atol=20.0 * tolerance * speed)
 
 
 @pytest.mark.parametrize("height", [1e-3, 1e-5, 1e-7, 1e-9, 1e-11])

@@ -20,7 +20,7 @@ from lcpstep.kernels.status import DONE
 from lcpstep.kernels.vectors import copy, product
 from lcpstep.pointers import abs
 
-OFF = 0.1  # of the tolerance of a gap: what steps leave of it, at most
+OFF = 1.0  # of the tolerance of a gap: what steps over a turn may leave of it
 
 
 def part_before(s: Rubbing) -> None:

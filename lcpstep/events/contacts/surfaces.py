@@ -14,7 +14,7 @@ from lcpstep.kernels.dynamics import gap_rates, gaps
 from lcpstep.kernels.vectors import clear, copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, max, min
 
-FREE = 1e-9  # relative: what a row can move of itself while others are held, or it depends on them
+FREE = 1e-6  # relative: what a row can move of itself while others are held, or it depends on them
 TOGETHER = 1e-3  # of the tolerance of a gap
 GONE = 1e-90  # of the tolerance: what is left of a motion that has died away
 SURE = 0.5  # of a gap: by how much its slope may change over Newton's step to zero if there is one
