@@ -1,4 +1,4 @@
-"""Judge random scenes: `python -m benchmarks.judge --scenes 10000 --seed 1`.
+"""Judge random scenes: `python -m benchmarks.judge --scenes 10000 --seed 1`; those of round numbers: `--tidy`.
 
 Every anomaly is printed with the lines that reproduce it, and at the end tables; exit status 1 if there is any in a
 run that does not say itself, by its `doubt`, that it is wrong. After an interrupt (Ctrl-C) the tables are those of
@@ -21,6 +21,8 @@ from benchmarks.judge.pool import CPU_LIMIT, Answer, Court, answers
 from benchmarks.judge.report import Tally, report, saved
 from benchmarks.judge.runs import WAYS, Finding, lines, silent
 from benchmarks.judge.shapes import FAMILIES
+from benchmarks.judge.tidy import FAMILIES as TIDY
+from benchmarks.judge.tidy import tidy
 
 INTERRUPTED = 130  # as shells say it
 
@@ -30,9 +32,12 @@ def options() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.judge", description=__doc__)
     parser.add_argument("--scenes", type=int, default=1000, help="how many")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--tidy", action="store_true", help="scenes as people write them, of round numbers")
     parser.add_argument("--first", type=int, default=0, help="number of the first scene")
     parser.add_argument("--method", nargs="+", choices=sorted(WAYS), default=list(WAYS))
-    parser.add_argument("--family", nargs="+", choices=sorted(FAMILIES), help="only these classes of scenes")
+    parser.add_argument(
+        "--family", nargs="+", choices=sorted(FAMILIES | TIDY), help="only these classes of scenes"
+    )
     parser.add_argument("--kind", help="only anomalies whose class has this in its name are shown")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--limit", type=float, default=CPU_LIMIT, help="CPU seconds of one run")
@@ -50,7 +55,7 @@ def options() -> argparse.ArgumentParser:
 def scenes(given: argparse.Namespace) -> Iterator[tuple[int, Description]]:
     """The scenes asked for, with their numbers."""
     for k in range(given.first, given.first + given.scenes):
-        d = draw(given.seed, k)
+        d = tidy(given.seed, k) if given.tidy else draw(given.seed, k)
         if not given.family or d.family in given.family:
             yield k, d
 

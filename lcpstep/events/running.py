@@ -54,13 +54,19 @@ class EventRun(Run):
         return Counts(self.tally.steps, force_evaluations=self.evaluations, events=self.tally.events)
 
     def states(self) -> States:
-        """All states kept, and the last one where states are kept by steps or events."""
+        """All states kept, and the last one where states are kept by steps or events, or asked for there."""
         s = super().states()
-        if not self.kept.given and not self.closed and not (len(s.t) > 0 and self.now <= s.t[-1]):
+        if not self.closed and self.owes(s.t):
             self.course.keep_now()
             s = super().states()
         self.closed = True
         return s
+
+    def owes(self, t: Array) -> bool:
+        """Whether the state reached is still to be kept; of given times only where an event fell on the last one."""
+        if self.kept.given:
+            return len(t) < len(self.kept.times) and bool(self.kept.times[len(t)] <= self.now)
+        return not (len(t) > 0 and self.now <= t[-1])
 
     def status(self, code: int) -> Status:
         """How the run ended, by what the kernel returned."""

@@ -18,6 +18,7 @@ from lcpstep.pointers import Doubles, after, inf, nan, whole
 from lcpstep.stepping.adaptive import LEVELS
 from lcpstep.stepping.pieces.codes import CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
 from lcpstep.stepping.pieces.corners import find_corners
+from lcpstep.stepping.pieces.keep import keep_now
 from lcpstep.stepping.pieces.loop import Steps
 from lcpstep.stepping.pieces.smooth import invert
 from lcpstep.stepping.pieces.state import Work
@@ -233,5 +234,7 @@ class Parts(Control):
         self.record.write_last(self.last_row)
 
     def accept(self) -> None:
-        """The step stands."""
+        """The step stands; an impact at the very end of the span comes before the state asked for there."""
         self.w.under_way = False
+        if self.over():
+            keep_now(self.w, self.stop)

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import scenes
-from lcpstep import EventDriven, simulate
+from lagrangian import LinearContacts, LinearSystem, Scene, System, scenes
+from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.trajectory import Kind, Status
 from tests.models import ball_on_table, bowl_scene, pendulum
 
@@ -170,3 +170,27 @@ def test_rows_and_logs_longer_than_their_buffers_are_complete():
     few = simulate(scene, EventDriven(), keep=np.arange(0.0, 10_000.5, 0.5))
     np.testing.assert_allclose(few.q[::2], 1.0, rtol=0, atol=1e-9)
     assert len(few.t) == 20_001
+
+
+@pytest.mark.parametrize("bodies", [1, 2])
+@pytest.mark.parametrize("known", [True, False], ids=["linear", "by functions"])
+@pytest.mark.parametrize(
+    "method",
+    [
+        EventDriven(), EventDriven(1e-6, 1e-6), Located(0.01), Located(0.01, 4), Located(0.1, tolerance=1e-5),
+        Located(0.1, 4, tolerance=1e-5), Moreau(0.01), Moreau(0.1, tolerance=1e-3),
+    ],
+    ids=str,
+)  # fmt: skip
+def test_a_state_asked_for_at_the_end_is_there_where_an_impact_falls_on_it(method, known, bodies):
+    def none(t, q, v, p, out):
+        out[:] = 0.0
+
+    for speed, end in ((1.0, 3.0), (2.0, 1.5), (3.0, 1.0), (-0.5, 2.0), (-1.0, 3.0)):
+        system = LinearSystem(np.eye(bodies)) if known else System(bodies, np.eye(bodies), none)
+        contacts = LinearContacts(-np.sign(speed) * np.eye(bodies), [abs(speed) * end] * bodies, 0.5)
+        scene = Scene(system, [0.0] * bodies, [speed] * bodies, (0.0, end), contacts=contacts)
+        for times in ([end], [0.0, 0.5 * end, end], np.linspace(0.0, end, 7)):
+            run = simulate(scene, method, keep=times)
+            np.testing.assert_array_equal(run.t, times)
+            np.testing.assert_allclose(run.q[-1], speed * end, rtol=1e-3)
