@@ -47,9 +47,8 @@ from lcpstep.pointers import abs, after, max
 
 # Of accelerations that hang together: as much solving for the forces leaves of one that is none
 LEANING = 1e-12
-LEAST = (
-    2.0**-960
-)  # of numbers that have their digits in products too: below it bodies at rest have no accelerations
+# Of numbers that have their digits in products, too: below it bodies at rest have no accelerations
+LEAST = 2.0**-960
 
 
 def decide(s: Rubbing) -> int:
