@@ -220,3 +220,24 @@ def test_a_collapse_above_an_elastic_floor_comes_to_rest(r):
     assert not np.any(run.v[-1])
     fast = [m.impacts.time[m.impacts.before < -1e-6][-1] for m in (run, steps)]
     assert abs(fast[0] - fast[1]) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("masses", "restitution", "q0", "v0"),
+    [
+        ((0.5, 2.0, 2.0, 0.5), (1.0, 1.0, 0.5, 0.0), (0.0, 0.0, 1.0, 2.0), 2.0),
+        ((1.0, 0.5, 3.0), (1.0, 0.5, 0.0), (0.0, 0.5, 1.5), 0.0),
+    ],
+)
+def test_beads_on_each_other_hop_no_longer_on_an_elastic_contact(masses, restitution, q0, v0):
+    """Hops of a cluster, as slow as the last ones that were left out, ended the run by their number."""
+    n = len(masses)
+    scene = Scene(
+        LinearSystem(np.diag(masses), force=-GRAVITY * np.array(masses)), q0, np.full(n, v0), (0.0, 4.0),
+        LinearContacts(np.eye(n) - np.eye(n, k=-1), restitution=restitution),
+    )  # fmt: skip
+    run, steps = simulate(scene, EventDriven(max_events=300_000)), simulate(scene, Located(1e-3))
+    assert run.status is steps.status is Status.DONE
+    assert np.max(np.abs(run.v[-1])) < 1e-12
+    times = np.linspace(0.0, 4.0, 100)
+    assert np.max(np.abs(run.at(times)[0] - steps.at(times)[0])) < 1e-3

@@ -77,11 +77,12 @@ def is_left_over(s: Contacts, c: int, u: float, alpha: float) -> bool:
     """Whether contact c, elastic, hops at u, hardly faster than the tolerance, and for longer than a run can follow.
 
     A collapse that others end leaves it so, where those come to rest first; nothing takes speed from it any more, and
-    the hop behind it took as long as the next one will.
+    the hop behind it took as long as the next one will. On those that rest any low hop is as slow as their own last
+    ones, which have been left out.
     """
     T = -2.0 * abs(u) / alpha
     alike = abs(s.since[c] - T) <= FADED * T + 4.0 * RESOLUTION * abs(s.t0)
-    slow = abs(u) <= LEFT_OVER * speed_tolerance(s, s.n_j + c)
+    slow = abs(u) <= LEFT_OVER * speed_tolerance(s, s.n_j + c) or passes_on(s, c)
     return slow and alike and s.t_end - s.t0 > s.tally.max_events * T and not hops_beside(s, c, False)
 
 
