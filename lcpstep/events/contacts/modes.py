@@ -214,9 +214,14 @@ def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
 
 
 def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
-    """Whether the contact of unknown a, which carries no force, accelerates away."""
-    known = NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s.rows, a, n_a)]
-    return acceleration(s, a, n_a, n_f) > known
+    """Whether the contact of unknown a, which carries no force, accelerates away.
+
+    Not by less than what in all the rest of the span makes no velocity that can be told: bodies that go on together,
+    touching along a curve, have a rounding of velocities across it whose square is left.
+    """
+    i, left = row_of(s.rows, a, n_a), s.clock.t_end - s.clock.t0
+    known, alpha = NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[i], acceleration(s, a, n_a, n_f)
+    return alpha > known and alpha * left > s.terms[s.problem.ids[a]]
 
 
 def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:

@@ -57,7 +57,7 @@ def hold(m: Model, plan: Plan, w: Work, place: int, t: float) -> bool:
     for k in range(n_k):
         c, force = w.chosen[k], w.z[k]
         if force == 0.0:
-            alpha = leaving(m, w, W, k, n_k)
+            alpha = leaving(m, plan, w, W, k, n_k, t)
             if alpha > 0.0:
                 if w.status[c] == CLOSED:
                     at = release_time(w, c, t, rest, alpha / W[c * w.n_c + c])
@@ -100,8 +100,8 @@ def choose_resting(w: Work) -> int:
     return n_k
 
 
-def leaving(m: Model, w: Work, W: Doubles, k: int, n_k: int) -> float:
-    """Acceleration with which the k-th chosen contact, which carries no force, opens; 0 if it is but rounding.
+def leaving(m: Model, plan: Plan, w: Work, W: Doubles, k: int, n_k: int, t: float) -> float:
+    """Acceleration with which the k-th chosen contact, which carries no force, opens at t; 0 if it is but rounding.
 
     Of a closed one that is known to pull by more than rounding its sign is enough: else it might be asked for ever.
     """
@@ -115,17 +115,25 @@ def leaving(m: Model, w: Work, W: Doubles, k: int, n_k: int) -> float:
         return max(alpha, 0.0)
     if alpha <= ROUNDING * (size + abs(w.b[k])) or alpha <= ROUNDING * (size + acceleration_terms(m, w, c)):
         return 0.0
-    return alpha if alpha > jerked(w, W, c) else 0.0
+    return alpha if alpha > jerked(w, W, c) and tells(plan, w, c, alpha, t) else 0.0
 
 
-def pulls(m: Model, w: Work, c: int) -> bool:
-    """Whether the negative force in w.p of closed contact c is more than rounding of what it balances.
+def tells(plan: Plan, w: Work, c: int, alpha: float, t: float) -> bool:
+    """Whether an acceleration makes a gap velocity that can be told within the rest of the span.
+
+    Bodies that go on together, touching along a curve, have a rounding of velocities across it whose square is left.
+    """
+    return alpha * (plan.clock.t_end - t) > ROUNDING * speed_terms(plan, w, c)
+
+
+def pulls(m: Model, plan: Plan, w: Work, c: int, t: float) -> bool:
+    """Whether the negative force in w.p of closed contact c, at t, is more than rounding of what it balances.
 
     The factor of the closed contacts is that of these forces. What they balance may be but the rounding of the next
     force, as in a row of bodies of which the last alone is pressed.
     """
     alpha, size = -w.W[c * w.n_c + c] * w.p[c], 0.0
-    if alpha <= jerked(w, w.W, c):
+    if alpha <= jerked(w, w.W, c) or not tells(plan, w, c, alpha, t):
         return False
     for d in range(w.n_c):
         if w.status[d] == CLOSED:

@@ -167,7 +167,7 @@ def release_at(
     forces, a, b = after(z.pressed, probe * n_c), from_probe(w, end, probe), end * probe / PROBES
     copy(w.p, forces, n_c)
     for c in range(n_c):
-        if w.status[c] == CLOSED and forces[c] < 0.0 and pulls(m, w, c):
+        if w.status[c] == CLOSED and forces[c] < 0.0 and pulls(m, plan, w, c, t):
             tau = vanishing(m, plan, w, z, t, a, b, forces[c], c)
             copy(w.p, forces, n_c)  # forces were asked for at other times
             if tau < first or found == NOBODY:
@@ -192,11 +192,11 @@ def brief_release(
         x = (2 * probe - 1) * h
         force_at(m, plan, w, z, t, x)
         z.turn.begin(x, h, left, w.p[c], right)
-        while not (w.p[c] < 0.0 and pulls(m, w, c)) and z.turn.seek():
+        while not (w.p[c] < 0.0 and pulls(m, plan, w, c, t)) and z.turn.seek():
             x = z.turn.x
             force_at(m, plan, w, z, t, x)
             z.turn.take(w.p[c])
-        if w.p[c] < 0.0 and pulls(m, w, c):
+        if w.p[c] < 0.0 and pulls(m, plan, w, c, t):
             force = w.p[c]
             tau = vanishing(m, plan, w, z, t, from_probe(w, end, probe), x, force, c)
             if (tau < first or found == NOBODY) and rises(m, plan, w, z, t, tau, x, end, force, c):
