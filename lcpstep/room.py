@@ -28,7 +28,7 @@ LOOKS = 64  # kept states whose gaps are looked at
 CLIMBS = 8  # of them, the deepest, from which the gap is climbed
 STEPS, HALVINGS = 60, 60  # of a climb, and of each of its steps
 SHALLOW = 1e-2  # of R: what steps lie inside of an obstacle anyway, from which nothing is climbed
-ROUNDING = 1e-9  # of R: no depth
+ROUNDING = 1e-9  # of R, and of the coordinates: no depth
 SOON = 1e-6  # of the time since the start: when a run that steps ever shorter would have gone on
 TOUCHES = 1e-3  # of R: gaps of contacts that may be closed
 
@@ -50,14 +50,14 @@ def no_room(run: Trajectory) -> str:
     forget()
     seen = np.array([run.scene.q0, *run.q[k]])  # what is kept may be but a rest
     reach = float(np.linalg.norm(np.ptp(seen, axis=0)))
-    lowest = g.min(axis=1)
+    lowest, least = g.min(axis=1), ROUNDING * max(reach, float(np.max(np.linalg.norm(seen, axis=1))))
     for i in [i for i in np.argsort(lowest)[:CLIMBS] if lowest[i] < -SHALLOW * reach]:
         c, at = int(np.argmin(g[i])), float(run.t[k[i]])
         try:
             best = _climbed(run.scene, at, run.q[k[i]], c, reach)
         except ValueError:  # a callback that fails beside the motion
             continue
-        if best < -ROUNDING * reach:
+        if best < -least:
             return (
                 f"the obstacle of contact {c} leaves no room at t = {at:.9g} s, where its gap is at most {best:.3g} "
                 f"m: the motion ends before that, and the run is wrong from there on"

@@ -137,3 +137,19 @@ def test_a_body_at_rest_on_a_ground_has_room_whatever_is_kept_of_its_run(keep):
     assert np.abs(run.v[-1]).max() < 1e-9  # it has come to rest, somewhat below the surface
     assert -1e-3 < run.q[-1, 1] - 0.3 * run.q[-1, 0] ** 2 < 0.0
     assert (run.status, run.doubt) == (Status.DONE, "")
+
+
+def between(t, q, v, p, out):
+    """Room between two walls, both at p; 0.1 * 3 lies 5.6e-17 behind that at 0.3."""
+    out[0], out[1] = p[0] - q[0], q[0] - p[0]
+
+
+def walls(t, q, v, p, out):
+    out[0, 0], out[1, 0] = -1.0, 1.0
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-2), Located(1e-2, 4)])
+def test_rounding_of_the_place_of_a_body_at_rest_is_no_lack_of_room(method):
+    scene = Scene(LinearSystem(M=1.0), 0.1 * 3, 0.0, (0.0, 1.0), Contacts(2, between, walls), p=[0.3])
+    run = simulate(scene, method)
+    assert (run.status, run.doubt) == (Status.DONE, "")

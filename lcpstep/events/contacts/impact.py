@@ -126,8 +126,9 @@ def strike_together(s: Rubbing, t: float, plastic: bool) -> bool:
 def gather(s: Rubbing, plastic: bool) -> tuple[int, int]:
     """The contacts that take part in an impact, which are closed from now on, and their problem; see `pose`."""
     for c in range(s.n_c):
-        least = s.terms[c] if s.parting[c] == 0 else -s.terms[c]
-        if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or s.before[c] <= least):
+        u, least = s.before[c], s.terms[c]
+        struck = u <= least if s.parting[c] == 0 else u < -least
+        if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or struck):
             s.mode[c] = SLIDES
     return pose(s)
 
