@@ -6,11 +6,9 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, LinearSystem, Scene
-from lcpstep import EventDriven, Located, simulate
+from lcpstep import Located, simulate
 
 METHODS = (
-    EventDriven(),
-    EventDriven(1e-7, 1e-7),
     Located(h=0.01),
     Located(h=0.01, order=4),
     Located(h=0.08, tolerance=1e-4),

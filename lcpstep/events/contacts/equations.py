@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.codes import LEANS, SLIDES, STICKS
+from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import measure_velocities
+from lcpstep.events.rows.contacts import measure_velocities, speed_tolerance
 from lcpstep.events.rows.equations import (
     free_motion,
     renew_biases,
@@ -110,3 +110,17 @@ def load_terms(s: Rubbing, j: int) -> float:
         if not s.model.force.given:
             size += abs(s.model.constant[j]) + abs(s.model.cosine[j]) + abs(s.model.sine[j])
     return size
+
+
+def creeps(s: Rubbing) -> bool:
+    """Whether what slides without forces does so no faster than the tolerance tells; it may stick then.
+
+    In a corner of two rough surfaces, where only what sticks has forces, rounding of a blow, or what is left of
+    hops, is no sliding.
+    """
+    some = False
+    for c in range(s.n_c):
+        i = s.n_j + s.n_c + c
+        if s.mode[c] != OPEN and s.free[c] == 0 and abs(s.velocity[i]) <= speed_tolerance(s.rows, i):
+            s.free[c], s.problem.mu[c], some = 1, s.mu_s[c], True
+    return some

@@ -22,10 +22,10 @@ from lcpstep.events.codes import (
     STICKS,
 )
 from lcpstep.events.contacts.bracing import braced
-from lcpstep.events.contacts.equations import force_noise
+from lcpstep.events.contacts.equations import creeps, force_noise
 from lcpstep.events.contacts.several import opened_or_closed
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints, hold_modes, speed_tolerance
+from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints, hold_modes
 from lcpstep.events.rows.equations import size_of_acceleration
 from lcpstep.events.rows.held import constrain
 from lcpstep.events.rows.keep import tell
@@ -83,20 +83,6 @@ def decide(s: Rubbing) -> int:
             if n_f == 0:
                 leave_independent(s.rows, n_a, s.new_loaded)
             return DONE
-
-
-def creeps(s: Rubbing) -> bool:
-    """Whether what slides without forces does so no faster than the tolerance tells; it may stick then.
-
-    In a corner of two rough surfaces, where only what sticks has forces, rounding of a blow, or what is left of
-    hops, is no sliding.
-    """
-    some = False
-    for c in range(s.n_c):
-        i = s.n_j + s.n_c + c
-        if s.mode[c] != OPEN and s.free[c] == 0 and abs(s.velocity[i]) <= speed_tolerance(s.rows, i):
-            s.free[c], s.problem.mu[c], some = 1, s.mu_s[c], True
-    return some
 
 
 def rest_where_possible(s: Rubbing, n_a: int, n_f: int) -> None:
@@ -214,14 +200,9 @@ def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
 
 
 def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
-    """Whether the contact of unknown a, which carries no force, accelerates away.
-
-    Not by less than what in all the rest of the span makes no velocity that can be told: bodies that go on together,
-    touching along a curve, have a rounding of velocities across it whose square is left.
-    """
-    i, left = row_of(s.rows, a, n_a), s.clock.t_end - s.clock.t0
-    known, alpha = NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[i], acceleration(s, a, n_a, n_f)
-    return alpha > known and alpha * left > s.terms[s.problem.ids[a]]
+    """Whether the contact of unknown a, which carries no force, accelerates away."""
+    known = NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s.rows, a, n_a)]
+    return acceleration(s, a, n_a, n_f) > known
 
 
 def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
