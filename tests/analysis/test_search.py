@@ -36,7 +36,7 @@ def random(n):
 
 
 def test_few_starts_are_followed_for_long(simulated):
-    scene, starts, longest = between_walls(), random(60), 150
+    scene, starts, longest = between_walls(), random(40), 150
     found = search(scene, EventDriven(), starts, 0.0, longest)
     few = sum(simulated)
     simulated.clear()
