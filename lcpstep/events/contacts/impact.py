@@ -81,9 +81,9 @@ def strike(s: Rubbing, t: float, plastic: bool) -> bool:
 
 
 def look_before(s: Rubbing) -> None:
-    """The velocities before an impact."""
+    """The velocities before an impact, and before the corner that it is at."""
     for c in range(s.n_c):
-        s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
+        s.before[c] = s.velocity[s.n_j + c] - s.jumped[c] if s.mode[c] == OPEN else 0.0
         if s.n_t > 0:
             take_for_none(s, c)
         s.free[c] = 1
@@ -156,35 +156,39 @@ def strike_with(s: Rubbing, t: float, n_a: int, n_f: int, jammed: int, plastic: 
         c = s.problem.ids[a]
         u = s.velocity[s.n_j + c]
         if s.problem.impulse[a] > 0.0:
-            if jammed < 0 and not (plastic or s.in_turn or s.thrown[c] == 1):
+            if jammed < 0 and not (plastic or s.in_turn):
                 u = 0.0 - s.model.restitution[c] * min(s.before[c], 0.0)  # by the law
             kind = ACCUMULATION if plastic and s.model.restitution[c] > 0.0 else IMPACT
             kind = JAM if c == jammed else kind
-            before = 0.0 if s.thrown[c] == 1 else s.before[c]  # its obstacle takes it along
-            s.clock.log(t, c, kind, before, u, s.problem.impulse[a])
+            s.clock.log(t, c, kind, s.before[c], u, s.problem.impulse[a])
             s.rows.since[c], s.rows.struck[c], s.carried[c] = t - s.rows.struck[c], t, 0
-        s.mode[c], s.thrown[c] = OPEN if u > s.terms[c] else SLIDES, 0
+        s.mode[c], s.jumped[c] = OPEN if u > s.terms[c] else SLIDES, 0.0
 
 
 def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
     """Impulses of n_a contacts, n_f of them with tangents, by the law of impact; False where there are none.
 
-    By Moreau's law u+ + r u- = W p + (1 + r) u-: that is `rate`, for u- <= 0; with the tangents' it is the same.
-    An obstacle whose velocity jumps takes along what lies on it: u- = 0.
+    By Moreau's law u+ + r u- = W p + (1 + r) u-: that is `rate`, for u- <= 0, and what has jumped at a corner; with
+    the tangents' it is the same.
     """
     own = s.in_turn or plastic
     for a in range(n_a):
         c = s.problem.ids[a]
-        r = 0.0 if s.thrown[c] == 1 else s.model.restitution[c]
-        s.problem.rate[a] = s.before[c] if own else (1.0 + r) * min(s.before[c], 0.0)
-        s.problem.slow[a] = inf if s.thrown[c] == 1 else 0.0
+        rate = s.before[c] if own else (1.0 + s.model.restitution[c]) * min(s.before[c], 0.0)
+        s.problem.rate[a] = rate + s.jumped[c]
+        s.problem.slow[a] = inf if taken_along(s, c) else 0.0
     for f in range(n_f):
         c = s.problem.ids[s.problem.carrier[f]]
-        share = 1.0 if own or s.thrown[c] == 1 else 1.0 + s.tangential[c]
+        share = 1.0 if own or taken_along(s, c) else 1.0 + s.tangential[c]
         s.problem.rate[n_a + f] = share * s.velocity[s.n_j + s.n_c + c]
     if s.in_turn and not plastic:
         return strike_in_turn(s.problem, s.model.restitution, n_a, n_f, -1)
     return solve_contacts(s.problem, n_a, n_f)
+
+
+def taken_along(s: Rubbing, c: int) -> bool:
+    """Whether contact c, which was closed, strikes as the velocity of its obstacle jumps: u- = 0."""
+    return s.jumped[c] != 0.0 and s.before[c] == 0.0
 
 
 def jam(s: Rubbing, t: float) -> int:
@@ -248,5 +252,5 @@ def forget_terms(s: Rubbing) -> None:
     clear(s.instant, s.n_r)
     clear(s.terms, 2 * s.n_c)
     for c in range(s.n_c):
-        s.parting[c] = s.thrown[c] = 0
+        s.parting[c], s.jumped[c] = 0, 0.0
     measure_velocities(s.rows, after(s.y, s.n_q))

@@ -27,6 +27,7 @@ from lcpstep.events.codes import (
 )
 from lcpstep.events.contacts.balance import opens_any, reconsider
 from lcpstep.events.contacts.chatter import close_small
+from lcpstep.events.contacts.corners import turn_corner
 from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.guards import begin_guards
 from lcpstep.events.contacts.impact import forget_terms, jam, jump
@@ -35,8 +36,7 @@ from lcpstep.events.contacts.modes import adopt_modes, decide, obey, undecided
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
 from lcpstep.events.contacts.switching import look_at_guards, switch
-from lcpstep.events.rows.contacts import count_impulses, measure_velocities, sliding, still
-from lcpstep.events.rows.jumps import drive_joints, go_beyond
+from lcpstep.events.rows.contacts import sliding
 from lcpstep.events.rows.keep import keep, keep_event
 from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
@@ -134,28 +134,6 @@ def begin(s: Rubbing) -> int:
         return NOT_FINITE
     forget_terms(s)
     find_closed(s)
-    s.rows.next = JUMP
-    return DONE
-
-
-def turn_corner(s: Rubbing) -> int:
-    """Beyond a corner, where obstacles and belts may have jumped in speed, contacts strike and modes are sought.
-
-    U- of a closed contact is that before the jump, and its obstacle takes the body along.
-    """
-    s.clock.find_corners(s.clock.t0)
-    go_beyond(s.rows, s.y, s.v)
-    if not measure(s, s.clock.t0, s.y):
-        return NOT_FINITE
-    forget_terms(s)
-    if drive_joints(s.rows, s.v):
-        count_impulses(s.rows, s.rows.held)
-        measure_velocities(s.rows, s.v)
-    for c in range(s.n_c):
-        i = s.n_j + c
-        s.touches[c] = 1 if s.mode[c] != OPEN else 0
-        if s.mode[c] != OPEN and abs(s.velocity[i]) > still(s.rows, i):
-            s.mode[c], s.thrown[c] = OPEN, 1
     s.rows.next = JUMP
     return DONE
 

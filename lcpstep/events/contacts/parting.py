@@ -18,7 +18,7 @@ from lcpstep.events.rows.held import constrain, hold_joints
 from lcpstep.events.rows.on_joints import is_led
 from lcpstep.kernels.status import DONE
 from lcpstep.kernels.vectors import copy, product
-from lcpstep.pointers import abs
+from lcpstep.pointers import abs, min
 
 OFF = 1.0  # of the tolerance of a gap: what steps over a turn may leave of it
 
@@ -78,13 +78,21 @@ def rejoin(s: Rubbing) -> None:
         s.parting[c] = 0
 
 
+def rebound(s: Rubbing, c: int) -> float:
+    """By the law, r u- of a contact that has come to its surface at a corner, beyond which it may move away."""
+    if s.jumped[c] == 0.0 or s.in_turn:
+        return 0.0
+    return s.model.restitution[c] * min(s.velocity[s.n_j + c] - s.jumped[c], 0.0)
+
+
 def approaches(s: Rubbing) -> bool:
     """Whether a contact on its surface approaches it; one there without speed to rounding is closed."""
     hit = False
     for c in range(s.n_c):
         u = s.velocity[s.n_j + c]
         if s.mode[c] == OPEN and s.touches[c] == 1:
-            hit = hit or u < -s.terms[c]
-            if abs(u) <= s.terms[c] and s.parting[c] == 0:
+            strikes = u + rebound(s, c) < -s.terms[c]
+            hit = hit or strikes
+            if abs(u) <= s.terms[c] and s.parting[c] == 0 and not strikes:
                 s.mode[c] = SLIDES
     return hit

@@ -22,11 +22,11 @@ cdef class Rubbing(RungeKutta):
     cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, instant, paces
     cdef Doubles shifted_rate, counted, total, loads, doubt, effect, effects
     cdef Doubles mu, mu_s, slip, tangential, direction, new_direction, terms, before
-    cdef Doubles lands, height, rise, bend, speed, stray
+    cdef Doubles lands, height, rise, bend, speed, jumped, stray
     cdef Bracket bracket
     cdef readonly Motion watch
     cdef bint hopping, watched, flying
     cdef Py_ssize_t guards
-    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, thrown, tried, hops, carried
+    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, tried, hops, carried
     cdef Doubles value, band, samples
     cdef Indices armed

@@ -41,7 +41,7 @@ class Rubbing(RungeKutta):
     yields                       sliding that jams ends in an impact without collision
     in_turn                      impacts are integrated, one contact after the other: see `kernels.energetic`
     new_mode, new_direction, new_loaded : (n_c,)   as decided, but not yet obeyed
-    thrown : (n_c,)              closed, and the velocity of its obstacle has just jumped
+    jumped : (n_c,)              by how much its gap velocity has just jumped, of what is on its surface at a corner
     paces : (n_r + 1,)           the step to be tried next when so many rows were last held;  paced   so many now
     effects : (n_q + n_r, n_q + n_r)   what each force and bias does alone, where rows and masses never change
     loads : (16, n_r)            multipliers at the stages of the step last made
@@ -102,7 +102,7 @@ class Rubbing(RungeKutta):
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
-        self.table = np.zeros(4 * n + (4 + ALL) * r + 1 + (n + r) ** 2 + 8 * n_c)
+        self.table = np.zeros(4 * n + (4 + ALL) * r + 1 + (n + r) ** 2 + 9 * n_c)
         shared = self.rows
         shared.q, shared.v, shared.rough = self.y, after(self.y, n), self.coefficients.rough
         shared.mu, shared.mu_s = self.coefficients.sliding, self.coefficients.sticking
@@ -133,15 +133,15 @@ class Rubbing(RungeKutta):
         self.rise = after(self.height, n_c)
         self.bend = after(self.rise, n_c)
         self.speed = after(self.bend, n_c)
-        self.stray, self.loose = after(self.speed, n_c), 0
+        self.jumped = after(self.speed, n_c)
+        self.stray, self.loose = after(self.jumped, n_c), 0
         self.bracket, self.hopping = Bracket(), False
         self.watch, self.watched, self.guards = None, False, ENTERED
         self.flying = False
-        self.marks = np.zeros(5 * n_c, dtype=np.intp)
+        self.marks = np.zeros(4 * n_c, dtype=np.intp)
         self.new_mode = indices(self.marks)
         self.new_loaded = indices_after(self.new_mode, n_c)
-        self.thrown = indices_after(self.new_loaded, n_c)
-        self.hops = indices_after(self.thrown, n_c)
+        self.hops = indices_after(self.new_loaded, n_c)
         self.carried = indices_after(self.hops, n_c)
         self.looks = np.zeros(GUARDS * n_c * (SAMPLES + 2))
         self.value = doubles(self.looks)

@@ -20,6 +20,7 @@ from lcpstep.events.codes import (
     STICKS,
     SWITCH,
 )
+from lcpstep.events.contacts.corners import land_on_corner
 from lcpstep.events.contacts.equations import measure, share_left
 from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
 from lcpstep.events.contacts.hops import carry, find_landings, interrupt, shortest_hop
@@ -227,6 +228,9 @@ def meet(s: Rubbing, c: int) -> int:
         return NO_SURFACE
     s.touches[c] = 1
     forget_terms(s)
+    if s.clock.leaves_to_corner(s.clock.t0):
+        s.clock.start_at(s.clock.high)
+        return land_on_corner(s)
     if not s.in_turn:
         part_before(s)
     s.rows.next = JUMP

@@ -132,7 +132,7 @@ def fly(s: Flight) -> bool:
     keep_times(s, t, False)
     s.now = t
     if is_hop or -u > ON_THE_SURFACE * max(1.0, abs(s.v[0])):
-        impact(s, min(u, 0.0))
+        strike(s, min(u, 0.0))
     elif tau <= a:  # a touch at the very time of the last event
         s.hold = end
         settle_again(s)
@@ -140,6 +140,14 @@ def fly(s: Flight) -> bool:
         settle(s, 0.0)
         keep_event(s)
     return True
+
+
+def strike(s: Flight, u: float) -> None:
+    """The impact at hand, which is left to a corner that it cannot be told from."""
+    if s.leaves_to_corner(s.now):
+        s.now, s.g, s.u = s.high, 0.0, u
+    else:
+        impact(s, u)
 
 
 def skim(s: Flight) -> bool:
@@ -165,7 +173,7 @@ def skim(s: Flight) -> bool:
         s.hold = t + h
         settle_again(s)
     else:
-        impact(s, min(u, 0.0))
+        strike(s, min(u, 0.0))
     return True
 
 

@@ -33,9 +33,12 @@ def sticks(u: float, alpha: float, t: float) -> bool:
     return u == 0.0 or 2.0 * u <= -alpha * UNSEEN * abs(t)
 
 
-def impact(s: Flight, u: float) -> None:
-    """Newton's law u+ = -r u- now; then free flight, chattering or lasting contact."""
-    p = -(1.0 + s.r) * u / s.response
+def impact(s: Flight, u: float, jump: float = 0.0) -> None:
+    """Newton's law u+ = -r u- now; then free flight, chattering or lasting contact.
+
+    jump : of the obstacle's velocity, away from the body, at that very time
+    """
+    p = -((1.0 + s.r) * u + jump) / s.response
     s.impulse[0] += p
     log(s, s.now, IMPACT, u, -s.r * u, p)
     settle(s, -s.r * u)
@@ -153,18 +156,26 @@ def turn_corner(s: Flight) -> None:
     if s.on_surface and s.t0 == t:
         jump = pass_corner(s, t)
         if strikes and jump != 0.0:
-            impact(s, u)
+            land(s, t, u, jump)
         else:
             go_on(s, t, s.g0, u + jump)
         return
     if strikes:
         free(s, t - s.t0)
         if u < -ON_THE_SURFACE * max(1.0, abs(s.v[0])):
-            impact(s, u)
+            land(s, t, u, pass_corner(s, t))
             return
     s.find_corners(t)
     _, s.u, s.alpha = free(s, t - s.t0)
     s.peak = max(s.peak, abs(s.alpha))
+
+
+def land(s: Flight, t: float, u: float, jump: float) -> None:
+    """Come to the obstacle with the gap velocity u as its own jumps: strike, unless it moves away faster."""
+    if u + jump < -s.r * u:
+        impact(s, u, jump)
+    else:
+        go_on(s, t, 0.0, u + jump)
 
 
 def pass_corner(s: Flight, t: float) -> float:
