@@ -30,6 +30,7 @@ class Attractor:
         to a cycle that only the grid has
     impact_phase, impact_before, impact_after : (m,)   impacts: phase in [0, 1), gap velocities [m/s]
     impact_number : (m,)   the number of each in its period, from 1
+    impact_contact : (m,)   the contact that it is of
     lyapunov : largest Lyapunov exponent, per period of the forcing
     share : of the starts that went there
     modes : whether the scene is one with modes, so that `impacts` are its switches and landings begin to slide
@@ -44,6 +45,7 @@ class Attractor:
     impact_before: Array
     impact_after: Array
     impact_number: NDArray[np.int64]
+    impact_contact: NDArray[np.int64]
     cloud: Array
     lyapunov: Lyapunov
     share: float = 1.0

@@ -35,8 +35,8 @@ STARTS = ("fixed", "forward", "backward", "random")
 IMPACTS_RECORDED = 512  # of a period
 PART = 8  # parameter values of a part of the sweep
 LISTS = {  # of all events, and what each says of one
-    "impact": ("value", "run", "period", "number", "phase", "before", "after"),
-    "landing": ("value", "run", "period", "number", "phase"),
+    "impact": ("value", "run", "period", "number", "contact", "phase", "before", "after"),
+    "landing": ("value", "run", "period", "number", "contact", "phase"),
 }
 TAKEN = {  # names in the dataset
     "run", "period", "impacts", "ends", "status", "corner_phase", "corner", *LISTS,
@@ -98,8 +98,9 @@ def bifurcation(
         dimension `state`); impacts (their number; of switches where there are modes), ends (chattering sequences and
         other landings; beginnings of sliding); status on (run, <parameter>); corner_phase on (<parameter>, corner).
         All impacts as one long list: impact_phase in [0, 1), impact_before, impact_after, and where each belongs,
-        impact_value (index of the parameter's value), impact_run, impact_period, impact_number; likewise
-        landing_phase, .., the ends of chattering sequences. Everything that it was made from is in the attributes.
+        impact_value (index of the parameter's value), impact_run, impact_period, impact_number, impact_contact;
+        likewise landing_phase, .., the ends of chattering sequences. Everything that it was made from is in the
+        attributes.
 
     Raises
     ------

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.analysis.variation import PeriodMap
-from lcpstep.maps.batch import Periods, continued, periods
+from lcpstep.maps.batch import Periods, periods
+from lcpstep.maps.one_by_one import continued
 from lcpstep.simulation import Method, simulate
 
 Array = NDArray[np.float64]

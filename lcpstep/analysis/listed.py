@@ -30,13 +30,18 @@ def listed(found: Periods, period: float, value: int) -> Arrays:
     Returns
     -------
     impact_value, impact_run, impact_period, impact_number (from 1), impact_phase in [0, 1), impact_before,
-    impact_after [m/s]; landing_value, .. landing_phase: arrays of one length each, in the order of time
+    impact_after [m/s]; landing_value, .. landing_phase: arrays of one length each, in the order of time; also
+    impact_contact and landing_contact, 0 of a system with modes
     """
     result: Arrays = {}
-    for name, time in (("impact", found.time), ("landing", found.landed)):
+    for name, time, contact in (
+        ("impact", found.time, found.struck),
+        ("landing", found.landed, found.resting),
+    ):
         run, kept, number = np.nonzero(np.isfinite(time))
         places = (np.full(len(run), value), run, kept, number + 1)
         result |= {f"{name}_{k}": x.astype(np.int32) for k, x in zip(PLACE, places, strict=True)}
+        result[f"{name}_contact"] = contact[run, kept, number].astype(np.int32)
         result[f"{name}_phase"] = time[run, kept, number] / period % 1.0
         if name == "impact":
             result["impact_before"] = found.before[run, kept, number]

@@ -41,6 +41,7 @@ def described(
         impact_before=found["impact_before"],
         impact_after=found["impact_after"],
         impact_number=found["impact_number"],
+        impact_contact=found["impact_contact"],
         cloud=sample.states.reshape(-1, sample.states.shape[-1]),
         lyapunov=exponent(P, sample, x, n),
         share=share,

@@ -180,6 +180,7 @@ def _dataset(scene: Any, method: Any, found: Attractors, seed: int) -> Any:
         "impact_before": (at, padded([a.impact_before for a in found.found], impacts)),
         "impact_after": (at, padded([a.impact_after for a in found.found], impacts)),
         "impact_number": (at, padded([a.impact_number for a in found.found], impacts)),
+        "impact_contact": (at, padded([a.impact_contact for a in found.found], impacts)),
         "start": (("run", "state"), found.starts),
         "label": (("run",), found.label),
     }

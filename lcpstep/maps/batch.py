@@ -7,31 +7,25 @@ The one door to the fast ways: event-driven runs with closed-form flow (`follow`
 from __future__ import annotations
 
 import math
-from copy import copy
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import HybridScene, Scene, checks
-from lcpstep.errors import SimulationError
 from lcpstep.events import EventDriven
 from lcpstep.maps import follow, lockstep, modes
+from lcpstep.maps.one_by_one import one_by_one
 from lcpstep.maps.task import (
     INSIDE as INSIDE,
 )  # in place of a `Status`: the start lies inside of the obstacle
 from lcpstep.maps.task import UNREACHED, Task
-from lcpstep.pace import counted
-from lcpstep.simulation import Method, simulate
+from lcpstep.simulation import Method
 from lcpstep.stepping.moreau import Moreau
-from lcpstep.trajectory import Kind, Status
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 IMPACTS_KEPT = 64  # of each period; their number is known beyond
-ROUNDING = 64 * np.finfo(float).eps
-LONGEST = 64  # periods in one run
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +40,7 @@ class Periods:
     states : (m, kept, 2 n_q)   (q, v) at the end of each kept period
     time, before, after : (m, kept, most)   time [s] and gap velocities [m/s] of the first impacts in each period,
         nan where there were fewer
+    struck, resting : (m, kept, most)   contact of each impact, and of each landing; 0 of a system with modes
     landed : (m, kept, most)   times at which the contact closed for good in each period [s], the first ones: ends of
         chattering sequences (their accumulation points), and impacts without rebound
     impacts, ends : (m, kept)   number of impacts, and of these landings, in each period
@@ -61,7 +56,9 @@ class Periods:
     time: Array
     before: Array
     after: Array
+    struck: Ints
     landed: Array
+    resting: Ints
     impacts: Ints
     ends: Ints
     tangents: Array
@@ -167,8 +164,9 @@ def _fast(
 def _answer(task: Task) -> Periods:
     return Periods(
         states=task.states, time=task.impacts[..., 0], before=task.impacts[..., 1], after=task.impacts[..., 2],
-        landed=task.landings, impacts=task.counts[..., 0], ends=task.counts[..., 1],
-        tangents=task.tangents, reached=task.reached, taken=task.taken, final=task.final, status=task.codes,
+        struck=task.struck, landed=task.landings, resting=task.resting,
+        impacts=task.counts[..., 0], ends=task.counts[..., 1], tangents=task.tangents,
+        reached=task.reached, taken=task.taken, final=task.final, status=task.codes,
     )  # fmt: skip
 
 
@@ -213,88 +211,9 @@ def _task(
         targets=np.ascontiguousarray(to.points), radius=np.ascontiguousarray(to.radius),
         scale=np.ascontiguousarray(to.scale),
         states=np.full((m, kept, d), np.nan), impacts=np.full((m, kept, most, 3), np.nan),
+        struck=np.zeros((m, kept, most), dtype=np.intp), resting=np.zeros((m, kept, most), dtype=np.intp),
         landings=np.full((m, kept, most), np.nan),
         counts=np.zeros((m, kept, 2), dtype=np.intp), reached=np.full(m, UNREACHED, dtype=np.intp),
         tangents=np.zeros((m, 0, d, d)), taken=np.zeros(m, dtype=np.intp),
         final=x.copy(), codes=np.zeros(m, dtype=np.intp), strict=True,
     )  # fmt: skip
-
-
-def one_by_one(scene: Scene, method: Method, task: Task, strict: bool) -> None:
-    """The task by `simulate`, one run after another."""
-    for i in counted(range(len(task.starts))):
-        q = task.starts[i, : scene.n_q]
-        g, _ = scene.gap(task.t_start, q, task.starts[i, scene.n_q :])
-        if strict and np.any(g < -ROUNDING * max(1.0, float(np.max(np.abs(q))))):
-            task.codes[i] = INSIDE
-        else:
-            _follow(scene, method, task, i)
-
-
-def _follow(scene: Scene, method: Method, task: Task, i: int) -> None:
-    """Run i, over ever more periods at a time as long as these go well.
-
-    By methods whose steps need not end with a period; by others, and from where a run over several ends early, one
-    period at a time.
-    """
-    x, k, n, most = task.starts[i].copy(), 0, 1, LONGEST if isinstance(method, EventDriven) else 1
-    while k < task.periods and task.codes[i] == Status.DONE and task.reached[i] == UNREACHED:
-        n = min(n, task.periods - k)
-        run, code = _several_periods(scene, method, task, x, n)
-        if run is None and n > 1:
-            n = most = 1
-            continue
-        task.codes[i], task.taken[i] = code, k + 1
-        for j in range(0 if run is None else n):
-            before, x, k = x, np.concatenate([run.q[j], run.v[j]]), k + 1
-            task.taken[i] = k
-            if k > task.drop:
-                task.states[i, k - 1 - task.drop] = x
-                _record(task, i, k - 1 - task.drop, run, j, before)
-            if len(task.targets):
-                hits = np.flatnonzero(np.max(np.abs(task.targets - x) / task.scale, axis=1) <= task.radius)
-                task.reached[i] = hits[0] if len(hits) else UNREACHED
-                if len(hits):
-                    break
-        n = min(2 * n, most)
-    task.final[i] = x
-
-
-def _several_periods(scene: Scene, method: Method, task: Task, x: Array, n: int) -> tuple[Any, int]:
-    """A run over n periods, its states those at their ends, or None; a `Status`."""
-    ends = np.append(task.t_end, task.t_start + np.arange(2, n + 1) * (task.t_end - task.t_start))
-    one = continued(scene, x, (task.t_start, float(ends[-1])))
-    try:
-        run = simulate(one, method, keep=ends)
-    except SimulationError as error:
-        return None, int(error.trajectory.status)
-    return (run if run.status == Status.DONE else None), int(run.status)
-
-
-def _record(task: Task, i: int, k: int, run: Any, j: int, start: Array) -> None:
-    """What happened in the kept period k of run i, the j-th of these of `_several_periods`, from its start on."""
-    log = np.asarray(run.impacts)
-    if len(log) == 0:
-        return
-    first, end = np.searchsorted(log["time"], [run.t[j - 1] if j else -math.inf, run.t[j]], side="right")
-    log = log[first:end]
-    time = np.minimum(log["time"] - j * (task.t_end - task.t_start), task.t_end)
-    # A contact closed at the section is no impact, and no landing
-    later, least = time > task.t_start, ROUNDING * max(1.0, float(np.max(np.abs(start))))
-    impacts = np.flatnonzero((log["kind"] == Kind.IMPACT) & (later | (np.abs(log["before"]) > least)))
-    ends = np.flatnonzero((log["kind"] == Kind.STICK) & later)
-    shown = impacts[: task.impacts.shape[2]]
-    what = time[shown], log["before"][shown], log["after"][shown]
-    task.impacts[i, k, : len(shown)] = np.stack(what, axis=1)
-    shown = ends[: task.landings.shape[2]]
-    task.landings[i, k, : len(shown)] = time[shown]
-    task.counts[i, k] = len(impacts), len(ends)
-
-
-def continued(scene: Scene, x: Array, t_span: tuple[float, float]) -> Scene:
-    """The scene from another state on, unchecked: time-stepping may have left it inside of the obstacle."""
-    result = copy(scene)
-    state = {"q0": x[: scene.n_q].copy(), "v0": x[scene.n_q :].copy(), "t_span": t_span}
-    for name, value in state.items():
-        object.__setattr__(result, name, value)
-    return result

@@ -22,6 +22,8 @@ class Task(NamedTuple):
     scale: Any  # (2,)
     states: Any  # (m, kept, 2) after each kept period
     impacts: Any  # (m, kept, most, 3) time and gap velocities before and after; the first ones of each period
+    struck: Any  # (m, kept, most) contact of each impact
+    resting: Any  # (m, kept, most) contact of each landing
     landings: Any  # (m, kept, most) time of each landing in it; the first ones
     counts: Any  # (m, kept, 2) see IMPACTS, ENDS
     tangents: Any  # (m, kept, 2, 2) derivative of each kept period's end by its start; (m, 0, 2, 2) for none

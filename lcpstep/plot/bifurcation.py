@@ -29,12 +29,20 @@ MODES = {  # the same of a scene with modes
     "accumulation": "sliding begins:\nphase [periods]",
     "impacts": "switches per period",
 }
+LISTED = {"phase": "impact_phase", "speed": "impact_before", "accumulation": "landing_phase"}
 PLACES = {"position": 0, "velocity": 1}  # of the first and the middle state
 USUAL = ("phase", "position")
 CHATTERING = ("accumulation", "impacts")
 PHASES = ("phase", "accumulation")
 LETTERS = "abcdefghijklmnopqrstuvwxyz"
 MISSING = "C3"
+ABOVE: dict[str, Any] = {
+    "loc": "lower right",
+    "bbox_to_anchor": (1.0, 1.02),
+    "fontsize": 8,
+    "frameon": False,
+    "ncols": 4,
+}
 NARROW = 0.25  # of the period
 FINE = 4000  # places along an axis that can be told apart
 
@@ -78,7 +86,7 @@ def overlaid(
     for ax, name in zip(axes, shown, strict=False):
         for k, other in enumerate(others.values()):
             panel(ax, other, name, f"C{k}", 2.5)
-        panel(ax, reference, name)
+        panel(ax, reference, name, "k")
     for k, name in enumerate(others):
         away = apart[name]["phase_distance"].values
         distance.semilogy(reference[parameter].values, away, f"C{k}.-", label=name)
@@ -90,13 +98,20 @@ def overlaid(
     return figure
 
 
-def panel(ax: Any, data: Any, name: str, colour: str = "k", larger: float = 1.0) -> None:
-    """Points of one panel."""
+def panel(ax: Any, data: Any, name: str, colour: str | None = None, larger: float = 1.0) -> None:
+    """Points of one panel; where no colour is given, those of several contacts in colours of their own."""
     checks.has("ax", ax, "plot", "axes of matplotlib")
     checks.has("data", data, "attrs", "a dataset of lcpstep.analysis.bifurcation")
-    x, y = thinned(*points(data, name))
+    x, y = points(data, name)
     size = larger * float(np.clip(2400.0 / len(data[str(data.attrs["parameter"])]), 2.5, 4.0))
-    ax.plot(x, y, ".", color=colour, ms=size, mew=0.0, rasterized=True)
+    contact = contacts(data, name) if colour is None else np.zeros(len(y))
+    several = sorted(set(contact) | {0})
+    for c in several:
+        shown, here = colour or ("k" if c == 0 else f"C{c}"), contact == c
+        told = f"contact {c}" if len(several) > 1 else None
+        ax.plot(*thinned(x[here], y[here]), ".", color=shown, ms=size, mew=0.0, rasterized=True, label=told)
+    if len(several) > 1:
+        ax.legend(**ABOVE, markerscale=3.0)
     ax.set_ylabel(label(data, name))
     if name in PHASES:
         ax.set_ylim(phases_shown(y) if name == "accumulation" else (0.0, 1.0))
@@ -127,10 +142,9 @@ def phases_shown(phases: np.ndarray) -> tuple[float, float]:
 def points(data: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Parameter and ordinate of every point of a panel."""
     values = data[str(data.attrs["parameter"])].values
-    listed = {"phase": "impact_phase", "speed": "impact_before", "accumulation": "landing_phase"}
-    if name in listed:
-        kind = listed[name].split("_")[0]
-        return values[data[f"{kind}_value"].values], data[listed[name]].values
+    if name in LISTED:
+        kind = LISTED[name].split("_")[0]
+        return values[data[f"{kind}_value"].values], data[LISTED[name]].values
     if name == "impacts":
         y = np.where(data["status"].values[..., None] == 0, data["impacts"].values, np.nan)
     elif data.attrs["modes"]:
@@ -138,6 +152,13 @@ def points(data: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
     else:
         y = data[{"position": "q", "velocity": "v"}[name]].isel(coordinate=0).values
     return np.broadcast_to(values[None, :, None], y.shape).ravel(), y.ravel()
+
+
+def contacts(data: Any, name: str) -> np.ndarray:
+    """The contact that each point of a panel is of; 0 where it is of none, and in files that do not tell."""
+    kind = LISTED.get(name, "").split("_")[0]
+    told = f"{kind}_contact" in data
+    return data[f"{kind}_contact"].values if told else np.zeros(len(points(data, name)[1]), dtype=int)
 
 
 def thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -184,7 +205,7 @@ def _warned(ax: Any, data: Any) -> None:
                 values[which], np.full(np.sum(which), 1.0), mark, color=MISSING, ms=5, clip_on=False, label=text,
                 transform=ax.get_xaxis_transform(),
             )  # fmt: skip
-            ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.02), fontsize=8, frameon=False)
+            ax.legend(**ABOVE)
 
 
 def _figure(rows: int, title: str) -> tuple[Any, Any]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
 from lagrangian.scenes import cam_follower
 from lcpstep import EventDriven, Moreau, simulate
 from lcpstep.analysis.bifurcation import bifurcation
@@ -46,6 +47,30 @@ def test_every_entry_of_the_list_says_where_it_belongs():
     assert np.array_equal(counted, data["impacts"].values)
     first = data["impact_number"].values == 1
     assert np.sum(first) == np.sum(data["impacts"].values > 0)
+
+
+def between_walls(w):
+    """The right wall is contact 0; the other one is elsewhere, so that both are struck at other speeds."""
+    block = LinearSystem(M=1.0, C=0.1, K=1.0, force=Harmonic(cosine=3.0, omega=w))
+    walls = LinearContacts(G=[[-1.0], [1.0]], offset=[0.5, 0.7], restitution=0.8)
+    return Scene(block, 0.0, 0.0, (0.0, 10.0), contacts=walls, period=2.0 * np.pi / w)
+
+
+def test_every_impact_says_which_contact_it_is_of():
+    data = bifurcation(between_walls, "w", [2.5, 2.9], drop=60, keep=2)
+    for k, w in enumerate((2.5, 2.9)):
+        scene = between_walls(w)
+        run = simulate(replace(scene, t_span=(0.0, 62.0 * scene.period)), EventDriven(), keep="impacts")
+        last = run.impacts[run.impacts.time > 60.0 * scene.period]
+        contact, _ = column(data, "impact_contact", k)
+        assert len(set(last.contact)) == 2
+        assert np.array_equal(contact, last.contact)
+        assert column(data, "impact_before", k)[0] == pytest.approx(last.before, abs=1e-9)
+    ax = pictures.bifurcation(data, show=["speed"]).axes[0]
+    drawn = [np.unique(np.round(line.get_ydata(), 9)) for line in ax.lines[:2]]
+    for c, speeds in enumerate(drawn):
+        own = data["impact_contact"].values == c
+        assert np.array_equal(speeds, np.unique(np.round(data["impact_before"].values[own], 9)))
 
 
 def test_time_stepping_lists_the_ends_of_chattering_where_event_driven_does():

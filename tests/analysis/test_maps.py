@@ -12,7 +12,8 @@ from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System, sc
 from lcpstep import EventDriven, Kind, Moreau, simulate
 from lcpstep.errors import LcpStepError
 from lcpstep.maps import ImpactMap, NoReturn, StroboscopicMap, iterate, periods
-from lcpstep.maps.batch import INSIDE, Targets, continued
+from lcpstep.maps.batch import INSIDE, Targets
+from lcpstep.maps.one_by_one import continued
 
 REST = [0.0, 0.0]
 

@@ -10,7 +10,7 @@ from lcpstep import EventDriven
 from lcpstep.analysis import basins as module
 from lcpstep.analysis.attractors import attractors, random_starts
 from lcpstep.analysis.search import FIRST, search
-from lcpstep.maps import batch
+from lcpstep.maps import one_by_one
 
 
 def between_walls(amplitude=3.0, w=2.8):
@@ -24,9 +24,11 @@ def between_walls(amplitude=3.0, w=2.8):
 def simulated(monkeypatch):
     """Times that are simulated from now on [s]."""
     spans = []
-    run = batch.simulate
+    run = one_by_one.simulate
     monkeypatch.setattr(
-        batch, "simulate", lambda scene, *a, **k: spans.append(np.ptp(scene.t_span)) or run(scene, *a, **k)
+        one_by_one,
+        "simulate",
+        lambda scene, *a, **k: spans.append(np.ptp(scene.t_span)) or run(scene, *a, **k),
     )
     return spans
 
