@@ -112,15 +112,16 @@ def load_terms(s: Rubbing, j: int) -> float:
     return size
 
 
-def creeps(s: Rubbing) -> bool:
-    """Whether what slides without forces does so no faster than the tolerance tells; it may stick then.
+def let_stick(s: Rubbing, fastest: float) -> bool:
+    """Let stick what slides without forces no faster than that, or than the tolerance tells; whether there is any.
 
-    In a corner of two rough surfaces, where only what sticks has forces, rounding of a blow, or what is left of
-    hops, is no sliding.
+    In a corner of two rough surfaces, where only what sticks has forces, rounding of a blow is no sliding, and what
+    turns dies away with the hops.
     """
     some = False
     for c in range(s.n_c):
         i = s.n_j + s.n_c + c
-        if s.mode[c] != OPEN and s.free[c] == 0 and abs(s.velocity[i]) <= speed_tolerance(s.rows, i):
+        slides = s.mode[c] != OPEN and s.free[c] == 0
+        if slides and abs(s.velocity[i]) <= max(fastest, speed_tolerance(s.rows, i)):
             s.free[c], s.problem.mu[c], some = 1, s.mu_s[c], True
     return some

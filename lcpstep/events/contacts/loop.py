@@ -28,7 +28,7 @@ from lcpstep.events.codes import (
 from lcpstep.events.contacts.balance import opens_any, reconsider
 from lcpstep.events.contacts.chatter import close_small
 from lcpstep.events.contacts.corners import turn_corner
-from lcpstep.events.contacts.equations import measure
+from lcpstep.events.contacts.equations import let_stick, measure
 from lcpstep.events.contacts.guards import begin_guards
 from lcpstep.events.contacts.impact import forget_terms, jam, jump
 from lcpstep.events.contacts.loose import find_loose
@@ -36,12 +36,11 @@ from lcpstep.events.contacts.modes import adopt_modes, decide, obey, undecided
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
 from lcpstep.events.contacts.switching import look_at_guards, switch
-from lcpstep.events.rows.contacts import sliding
 from lcpstep.events.rows.keep import keep, keep_event
 from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 from lcpstep.kernels.vectors import clear, copy, copy_indices
-from lcpstep.pointers import abs, min
+from lcpstep.pointers import abs, max, min
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
 LOOK_AHEAD, FURTHER = 1e-6, 10.0
@@ -145,7 +144,7 @@ def settle(s: Rubbing) -> int:
         if not measure(s, t, s.y):
             return NOT_FINITE
         code = seek_modes(s, t)
-        if code == PAINLEVE_INCONSISTENT and turn > 0 and ends_with_hops(s):
+        if code == PAINLEVE_INCONSISTENT and turn > 0 and let_stick(s, fastest_hop(s)):
             code = seek_modes(s, t)
         if code == DONE:
             code = obey(s, t)
@@ -156,19 +155,13 @@ def settle(s: Rubbing) -> int:
     return set_out(s, t)
 
 
-def ends_with_hops(s: Rubbing) -> bool:
-    """Let stick what slides without forces, but no faster than the hops struck that are left out; is there any?
-
-    In a corner of two rough surfaces what turns dies away with the hops.
-    """
-    fastest, some = 0.0, False
+def fastest_hop(s: Rubbing) -> float:
+    """How fast the last hop struck of those that are left out."""
+    fastest = 0.0
     for c in range(s.n_c):
         if s.rows.left[c] >= 0.0:
             fastest = max(fastest, abs(s.before[c]))
-    for c in range(s.n_c):
-        if s.mode[c] != OPEN and s.free[c] == 0 and abs(sliding(s.rows, c)) <= fastest:
-            s.free[c], some = 1, True
-    return some
+    return fastest
 
 
 def seek_modes(s: Rubbing, t: float) -> int:

@@ -22,7 +22,7 @@ from lcpstep.events.codes import (
     STICKS,
 )
 from lcpstep.events.contacts.bracing import braced
-from lcpstep.events.contacts.equations import creeps, force_noise
+from lcpstep.events.contacts.equations import force_noise, let_stick
 from lcpstep.events.contacts.several import opened_or_closed
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints, hold_modes
@@ -71,7 +71,7 @@ def decide(s: Rubbing) -> int:
             rate = acceleration_on_joints(s.rows, row_of(s.rows, a, n_a), s.a)
             s.problem.rate[a] = rate if abs(rate) > LEAST else 0.0
         code = find_forces(s, n_a, n_f)
-        if code == PAINLEVE_INCONSISTENT and begins and creeps(s):
+        if code == PAINLEVE_INCONSISTENT and begins and let_stick(s, 0.0):
             continue
         if code != DONE:
             return code
