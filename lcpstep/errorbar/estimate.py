@@ -13,7 +13,7 @@ from lcpstep.errorbar.breaks import increasing, with_nodes
 from lcpstep.errorbar.companions import BEST, Companion, companions, followed, in_closed_form, in_words
 from lcpstep.errorbar.curves import merged
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
-from lcpstep.errorbar.looks import NOWHERE, Looks, looks, seen
+from lcpstep.errorbar.looks import NOWHERE, Looks, fewer, looks, seen
 from lcpstep.errorbar.partners import WEAK, Pairs, Partners, partners
 from lcpstep.model import looked_at
 from lcpstep.recording import Kept
@@ -162,6 +162,8 @@ def against(
     known_there = every and look is not None and found[0][0].seen
     if look is not None and known_there:
         look = seen(look, last)
+    elif not every and look is not None:
+        look = fewer(run, look, last)
     else:
         windows = NOWHERE if wide is None else merged(logs[0].windows, around)
         look = looks(run, other, every, last, wide, windows)

@@ -62,7 +62,7 @@ def looks(
     windows : (k, 2) times in which one of the runs alone has struck, looked at just after where there are `wide` ones
     """
     if not every:
-        return Looks(_telling(run, end, MOST), (True, True), False, False)
+        return Looks(_telling(run, end, CLOSE * MOST), (True, True), False, False)
     most = min(max(LEAST, NUMBERS // run.scene.n_q), MOST)
     if wide is not None:
         even = wide[wide <= end]
@@ -88,21 +88,32 @@ def seen(look: Looks, end: float) -> Looks:
     return Looks(look.t[look.t <= end], (False, True), True, True)
 
 
+def fewer(run: Trajectory, look: Looks, end: float) -> Looks:
+    """Up to a time, as many of the kept states as are to be looked at: the other run has no others."""
+    k = np.searchsorted(run.t, look.t, side="right") - 1
+    return look._replace(t=_chosen(run.t[k], run.v[k], end, MOST))
+
+
 def _telling(run: Trajectory, end: float, most: int) -> Array:
-    """Kept times, or as many as are to be looked at, as near to each other as time, velocities and steps go on.
+    """Kept times, or as many as are to be looked at."""
+    return _chosen(run.t, run.v, end, most)
+
+
+def _chosen(t: Array, v: Array, end: float, most: int) -> Array:
+    """Of times as many as are to be looked at, as near to each other as time, velocities and steps go on.
 
     By their number there are some where chattering ends: it is over soon, at small speeds, and its errors are large.
     """
-    n = int(np.searchsorted(run.t, end, side="right"))
+    n = int(np.searchsorted(t, end, side="right"))
     if n <= most:
-        return run.t[:n]
-    some = slice(0, n, 1 + n // (CLOSE * most))
-    t, v = run.t[some], run.v[some]
+        return t[:n]
+    last, some = t[n - 1], slice(0, n, 1 + n // (CLOSE * most))
+    t, v = t[some], v[some]
     turns = np.abs(np.diff(v, axis=0)).sum(axis=1)
     share = np.minimum(turns, JUMP * turns.mean())
     going = np.cumsum(np.diff(t) / (t[-1] - t[0]) + share / max(share.sum(), TINY) + 1.0 / len(share))
     places = np.searchsorted(going, np.linspace(0.0, going[-1], most))
-    return np.append(t[np.unique(np.minimum(places, len(t) - 2))], run.t[n - 1])
+    return np.append(t[np.unique(np.minimum(places, len(t) - 2))], last)
 
 
 def _from_there(run: Trajectory, windows: Array, end: float, most: int) -> Array:

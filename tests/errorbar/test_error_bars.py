@@ -129,6 +129,18 @@ def test_without_every_step_the_kept_states_are_compared(keep):
         assert some.error.until == whole.until == 10.0
 
 
+@pytest.mark.parametrize("method", [Moreau(1e-3), Located(1e-3)])
+def test_without_every_step_a_bar_that_ends_early_is_the_error_too(method):
+    touching = LinearContacts(G=-1.0, offset=1.0, restitution=0.9)  # q = sin t touches it at pi/2
+    scene = Scene(LinearSystem(M=1.0, K=1.0), 0.0, 1.0, (0.0, 10.0), touching)
+    run = simulate(scene, method, keep=3, error=True)
+    assert run.error.until < 1.6
+    t = run.t[run.t <= run.error.until]
+    q, v = run.at(t)
+    assert run.error.position.sup == pytest.approx(np.max(np.abs(q[:, 0] - np.sin(t))), rel=0.01)
+    assert run.error.velocity.sup == pytest.approx(np.max(np.abs(v[:, 0] - np.cos(t))), rel=0.01)
+
+
 @pytest.mark.parametrize("scene", [scenes.sliding_block(), scenes.coulomb_oscillator()], ids=lambda s: s.name)
 def test_steps_with_friction_are_held_against_the_event_driven_run(scene):
     run = simulate(scene, Moreau(1.3e-3), error=True)
