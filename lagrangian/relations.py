@@ -48,6 +48,7 @@ def check_derivatives(scene: Scene, states: Iterable[State], run: bool = False) 
     with np.errstate(all="ignore"):
         for at in states:
             _check_mass(scene, at)
+            _check_arguments(scene, at)
             for relation in _relations(scene, at):
                 compare(relation)
     seen.add(p.tobytes())
@@ -77,6 +78,37 @@ def _check_mass(scene: Scene, at: State) -> None:
         M = _evaluated(mass, scene, (scene.n_q, scene.n_q))(at)
         if np.all(np.isfinite(M)):
             checks.symmetric_mass("system.mass", M)
+
+
+def _check_arguments(scene: Scene, at: State) -> None:
+    """ValueError where what moves by itself depends on the state, or a gap on velocities: no method asks for that."""
+    (t, q, _), (_, beside, faster) = at, _beside(scene, at, 0.0)
+    for name, f, shape in _moving(scene):
+        _check_same(name, "time", _evaluated(f, scene, shape), at, (t, beside, faster))
+    for name, c in _constraints(scene):
+        if not isinstance(c, LinearContacts):
+            gap = _evaluated(c.gap, scene, (c.n_c,))
+            _check_same(f"{name}.gap", "time and coordinates", gap, at, (t, q, faster))
+
+
+def _check_same(name: str, allowed: str, f: Callable[[State], Array], at: State, other: State) -> None:
+    """ValueError where a function differs at two states; one that differs from itself is noise."""
+    one, another = f(at), f(other)
+    if np.any(np.abs(one - another) > 0.0) and np.array_equal(one, f(at), equal_nan=True):
+        raise ValueError(
+            f"{name}: expected a function of {allowed} alone, but at t = {at[0]:.9g} it is "
+            f"{checks.shown(one)} at q = {checks.shown(at[1])}, v = {checks.shown(at[2])}, and "
+            f"{checks.shown(another)} at q = {checks.shown(other[1])}, v = {checks.shown(other[2])}"
+        )
+
+
+def _moving(scene: Scene) -> Iterator[tuple[str, Callback | None, tuple[int, int]]]:
+    """Frame and obstacles that move by themselves: functions of time, with the shape that they fill."""
+    if isinstance(scene.system, LinearSystem):
+        yield "system.frame", scene.system.frame, (scene.n_q, 3)
+    for name, c in _constraints(scene):
+        if isinstance(c, LinearContacts):
+            yield f"{name}.motion", c.motion, (c.n_c, 3)
 
 
 def _constraints(scene: Scene) -> Iterator[tuple[str, Any]]:

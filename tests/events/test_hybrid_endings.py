@@ -67,6 +67,8 @@ def test_infinitely_many_bounces_end_with_a_status_near_their_accumulation():
     run = simulate(HybridScene(system, [5.0, 0.0], "fall", (0.0, 10.0)), METHOD)
     assert run.status == Status.ENDLESS_SWITCHING
     assert run.t[-1] == pytest.approx(3.0, abs=1e-4)
+    assert "mode 'fall' follows itself" in run.message
+    assert "contacts" in run.message
     np.testing.assert_allclose(
         run.switches.time[:12], 1.0 + 2.0 * (1.0 - 0.5 ** np.arange(12)), rtol=0, atol=1e-10
     )

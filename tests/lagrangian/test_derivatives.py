@@ -216,3 +216,33 @@ def test_a_mass_matrix_that_is_not_symmetric_later_is_found_by_the_run(method):
     with pytest.raises(SimulationError, match=r"^system\.mass: the mass matrix must be symmetric") as caught:
         simulate(made(system=System(2, mass, force)), method)
     assert caught.value.trajectory.t[-1] == 2.0
+
+
+def test_obstacles_and_frames_that_depend_on_the_state_and_gaps_on_velocities_are_named():
+    def bumpy(t, q, v, p, out):  # the ground under a body, taken for an obstacle that moves by itself
+        out[0, 0], out[0, 1], out[0, 2] = 0.1 * math.cos(q[0]), 0.0, 0.0
+
+    def foreseen(t, q, v, p, out):
+        out[0] = q[0] + 0.1 * v[0]
+
+    def one(t, q, v, p, out):
+        out[0, 0] = 1.0
+
+    for said, make in (
+        (
+            r"contacts\.motion: expected a function of time alone",
+            lambda: ball(LinearContacts(1.0, 2.0, motion=bumpy)),
+        ),
+        (r"contacts\.gap: expected a function of time and co", lambda: ball(Contacts(1, foreseen, one))),
+        (r"joints\.gap: expected a function of time and co", lambda: ball(joints=Joints(1, foreseen, one))),
+        (
+            r"system\.frame: expected a function of time alone",
+            lambda: ball(system=LinearSystem(1.0, frame=bumpy)),
+        ),
+    ):
+        with pytest.raises(ValueError, match=said):
+            make()
+
+
+def ball(contacts=None, system=None, joints=None):
+    return Scene(system or LinearSystem(M=1.0), 0.0, 0.0, (0.0, 1.0), contacts, joints)

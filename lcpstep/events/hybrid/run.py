@@ -110,6 +110,11 @@ def undecided(scene: HybridScene, motion: Motion, status: Status, log: Array) ->
     names, t = scene.system.names, f"t = {motion.now:.12g}"
     if status == Status.ENDLESS_SWITCHING:
         chain = list(dict.fromkeys(names[int(k)] for k in log[-12:, 2]))
+        if len(chain) == 1 and chain[0] in scene.system.modes:
+            return (
+                f"at {t} mode {chain[0]!r} follows itself for ever at one instant, or ever faster: what comes to "
+                f"rest there asks for a mode of its own, or for unilateral `contacts` in the place of guard and reset"
+            )
         if len(chain) == 1:
             return (
                 f"at {t} the motion slides in mode {chain[0]!r} over the edge of its surface, where another one "
