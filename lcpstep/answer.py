@@ -5,6 +5,25 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def asked(t: ArrayLike, start: float, end: float) -> Array:
+    """Times at which states are asked for, (m,); ValueError where they are none within the run."""
+    try:
+        times = np.atleast_1d(np.asarray(t, dtype=float))
+    except (TypeError, ValueError):
+        raise ValueError(f"t: expected real numbers, got {t!r}") from None
+    if times.ndim != 1:
+        raise ValueError(f"t: expected a number or times in one dimension, got shape {times.shape}")
+    outside = ~((times >= start) & (times <= end))
+    if np.any(outside):
+        raise ValueError(f"t: expected times within [{start}, {end}] s, got {times[outside][0]}")
+    return times
+
 
 class Answer:
     """Base of `Trajectory` and of `HybridTrajectory`."""

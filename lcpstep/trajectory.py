@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene
-from lcpstep.answer import Answer
+from lcpstep.answer import Answer, asked
 
 Array = NDArray[np.float64]
 
@@ -127,18 +127,9 @@ class Trajectory(Answer):
 
         Raises
         ------
-        ValueError   a time lies outside the run, or between states that were not kept
+        ValueError   t has two dimensions, or a time lies outside the run or between states that were not kept
         """
-        try:
-            times = np.atleast_1d(np.asarray(t, dtype=float))
-        except (TypeError, ValueError):
-            raise ValueError(f"t: expected real numbers, got {t!r}") from None
-        outside = ~((times >= self.t[0]) & (times <= self.t[-1]))
-        if np.any(outside):
-            raise ValueError(
-                f"t: expected times within [{self.t[0]}, {self.t[-1]}] s, got {times[outside][0]}"
-            )
-        q, v = self.dense(times)
+        q, v = self.dense(asked(t, self.t[0], self.t[-1]))
         return (q[0], v[0]) if np.ndim(t) == 0 else (q, v)
 
     @property

@@ -69,6 +69,7 @@ def scene(**more):
         (lambda: RUN.save(3), "path: expected the name of a file"),
         (lambda: RUN.animate(3), "path: expected the name of a file"),
         (lambda: RUN.at("now"), "t: expected real numbers"),
+        (lambda: RUN.at([[0.0, 0.01], [0.02, 0.03]]), "t: expected a number or times in one dimension"),
         (lambda: scene(exact=lambda t: t), "exact: expected a function of times that gives q and v"),
         (lambda: Located(order=np.array([2, 4])), "order: expected 2, 4"),
         (lambda: EventDriven(jamming=np.array([1, 2])), "jamming: expected"),

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian.hybrid import HybridScene
-from lcpstep.answer import Answer
+from lcpstep.answer import Answer, asked
 from lcpstep.events.hybrid.layout import SWITCH_LEAD
 from lcpstep.trajectory import Counts, Status
 
@@ -100,10 +100,8 @@ class HybridTrajectory(Answer):
         return str(result[0]) if np.ndim(t) == 0 else result
 
     def _rows(self, t: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
-        times, s = np.atleast_1d(np.asarray(t, dtype=float)), self.pieces
-        outside = ~((times >= s.t[0]) & (times <= s.t[-1]))
-        if np.any(outside):
-            raise ValueError(f"t: expected times within [{s.t[0]}, {s.t[-1]}], got {times[outside][0]}")
+        s = self.pieces
+        times = asked(t, s.t[0], s.t[-1])
         return times, np.searchsorted(s.t, times, side="right") - 1
 
     def __repr__(self) -> str:
