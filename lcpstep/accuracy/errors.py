@@ -34,7 +34,7 @@ LOOKS = 2000  # instants looked at in any case, however coarse the grids
 MOST = 100_000  # instants looked at, about, however fine the grids, and those about jumps
 BESIDE = 2  # instants on either side of every jump or bend that are looked at in any case
 BENDS = 5000  # of the velocity, the sharpest
-ROUNDING = 8 * np.finfo(float).eps  # of a time
+ROUNDING = 32 * np.finfo(float).eps  # of a time: runs take one within a quarter of it for that of an event
 NODES, _ = gauss(2)
 
 

@@ -211,6 +211,14 @@ def test_what_is_nearer_than_is_asked_is_not_looked_for(a, b, least):
     assert hausdorff(Graph(*a.T), Graph(*b.T), least) == pytest.approx(max(whole, least), rel=2e-6, abs=1e-12)
 
 
+@pytest.mark.parametrize("method", [Located(0.111, order="exact"), Located(0.02, order=4)])
+def test_runs_that_take_a_time_just_before_an_impact_for_its_own_are_no_further_apart(method):
+    scene = scenes.bouncing_ball(h0=1.0, g=10.0, restitution=0.8, t_end=3.0)
+    apart = Difference(simulate(scene, method), simulate(scene, EventDriven()))
+    assert apart.sup_position < 1e-14
+    assert apart.graph_distance < 1e-12
+
+
 def test_the_distance_of_graphs_is_that_of_the_farthest_coordinate():
     scene = scenes.elastic_gas(n=4)
     apart = Difference(simulate(scene, Moreau(1e-2)), simulate(scene, Moreau(1e-3)))
