@@ -41,7 +41,8 @@ from lcpstep.trajectory import Trajectory
 
 KNOWN = (Moreau, Located, EventDriven)  # methods that have companions
 TIGHT = 1e-13
-BEST = EventDriven(TIGHT, TIGHT)
+SMALL = 1e-2  # size of a motion below which an absolute tolerance is as many times smaller [m]
+NOTHING = 1e-12  # size of a motion that is none [m]
 FIRST = {1: 1e-8, 2: 1e-10}  # tolerance by the order of steps, that their error is mostly large beside
 FAR = 0.1  # the same of event-driven runs that are tighter than usual
 LOOSEST, ENOUGH = 1e-8, 200.0  # tolerance of a companion, and how many times smaller than an error it is then
@@ -87,6 +88,17 @@ def _size(run: Trajectory) -> float:
     return 1.0 + max(float(np.max(np.abs(x))) for x in (run.q, run.v))
 
 
+def best(run: Trajectory) -> Any:
+    """The tightest companion."""
+    return EventDriven(TIGHT, _absolute(run))
+
+
+def _absolute(run: Trajectory) -> float:
+    """The tightest absolute tolerance, which beside a small motion has to be small too [m]."""
+    size = float(np.max(np.abs(run.q)))
+    return TIGHT * min(1.0, size / SMALL) if size > NOTHING else TIGHT
+
+
 def companions(run: Trajectory, error: float | None = None) -> Iterator[tuple[Companion, ...]]:
     """Companions that a run may have, the best first; the first that treats the scene is taken.
 
@@ -100,7 +112,7 @@ def companions(run: Trajectory, error: float | None = None) -> Iterator[tuple[Co
     loose = FIRST.get(order, 0.0) if error is None else min(LOOSEST, error / (ENOUGH * _size(run)))
     if loose > TIGHT and not in_closed_form(scene):
         yield (Companion(EventDriven(loose, loose), first=True),)
-    yield (Companion(BEST),)
+    yield (Companion(best(run)),)
 
 
 def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iterator[tuple[Companion, ...]]:
@@ -117,7 +129,9 @@ def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iter
     order = 4 if scene.n_j == 0 else 2
     # As tight as may be, the absolute one tighter: with that which the run has, a companion strikes the same together
     measure = Companion(
-        EventDriven(max(LEAST_TOLERANCE, min(TIGHT, method.rtol * FAR)), min(TIGHT, method.atol * FAR))
+        EventDriven(
+            max(LEAST_TOLERANCE, min(TIGHT, method.rtol * FAR)), min(_absolute(run), method.atol * FAR)
+        )
     )
     for pieces in PIECES:
         looks = Companion(Located(step / pieces, order), measures=False, first=pieces < PIECES[-1])

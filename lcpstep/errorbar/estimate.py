@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lcpstep.errorbar.bars import Bar, ErrorBar
 from lcpstep.errorbar.breaks import increasing, with_nodes
-from lcpstep.errorbar.companions import BEST, Companion, companions, followed, in_closed_form, in_words
+from lcpstep.errorbar.companions import Companion, best, companions, followed, in_closed_form, in_words
 from lcpstep.errorbar.curves import merged
 from lcpstep.errorbar.distance import Distance, alike, distance, fall, moving_apart
 from lcpstep.errorbar.looks import NOWHERE, Looks, fewer, looks, seen
@@ -83,11 +83,11 @@ def _soon(run: Trajectory, seconds: float, wide: Array | None) -> tuple[ErrorBar
         return None, None
     start, end = float(run.t[0]), _reached(run)
     part = replace(run.scene, t_span=(start, start + PART * (end - start)))
-    best = Companion(BEST)
-    x = followed(best, part, Kept(1, False, np.zeros(0)), seconds)
+    tightest = Companion(best(run))
+    x = followed(tightest, part, Kept(1, False, np.zeros(0)), seconds)
     if x is None or x.status != Status.DONE:
         return None, None
-    bar = against(run, True, [(best, x)], wide=wide, goes_on=True)
+    bar = against(run, True, [(tightest, x)], wide=wide, goes_on=True)
     if bar.reason:
         return bar, None
     work = max(run.counts.force_evaluations, run.counts.steps)

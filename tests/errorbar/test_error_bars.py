@@ -49,6 +49,14 @@ def test_the_bar_of_an_event_driven_run_is_the_error_of_its_tolerance_and_a_seco
     assert [x.split("(")[0] for x in run.error.companions] == ["EventDriven", "Located"]
 
 
+@pytest.mark.parametrize("method", [EventDriven(), EventDriven(1e-8, 1e-8), Located(1e-2, 4)])
+def test_the_bar_of_a_motion_of_micrometres_is_its_error(method):
+    scene = Scene(system=System(1, [[1.0]], spring), q0=1e-6, v0=0.0, t_span=(0.0, 20.0))
+    run = simulate(scene, method, error=True)
+    t = np.linspace(0.0, 20.0, 2001)
+    assert 0.5 < np.max(np.abs(run.at(t)[0][:, 0] - 1e-6 * np.cos(2.0 * t))) / run.error.position.sup < 2.0
+
+
 def test_errors_of_impacts_are_those_of_a_dropped_ball():
     h0, g, r = 1.0, 9.81, 0.8
     scene = scenes.bouncing_ball(h0=h0, restitution=r, t_end=2.0)
