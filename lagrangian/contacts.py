@@ -95,7 +95,7 @@ class Contacts(Pickled):
     Parameters
     ----------
     n_c : number of contacts
-    gap : callback filling out (n_c,)   g [m]
+    gap : callback filling out (n_c,)   g [m]; with friction a distance, and no other function that has its sign
     jacobian : callback filling out (n_c, n_q)   G = dg/dq
     gap_t : callback filling out (n_c,), or None for gaps that do not depend on time   partial g / partial t
     bias : callback filling out (n_c,), or None   (dG/dt) v + d(g_t)/dt, the gap acceleration at v' = 0;
