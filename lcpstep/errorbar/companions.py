@@ -88,7 +88,7 @@ def _size(run: Trajectory) -> float:
     return 1.0 + max(float(np.max(np.abs(x))) for x in (run.q, run.v))
 
 
-def best(run: Trajectory) -> Any:
+def best(run: Trajectory) -> EventDriven:
     """The tightest companion."""
     return EventDriven(TIGHT, _absolute(run))
 

@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Moreau, simulate, study
+from lagrangian import LinearContacts, LinearSystem, Scene, System, scenes
+from lcpstep import EventDriven, Located, Moreau, simulate, study
 from lcpstep.accuracy.horizon import growth
 from lcpstep.accuracy.orders import cost_of, fitted_order
 from lcpstep.accuracy.work_precision import Study
@@ -78,6 +78,16 @@ def test_orders_of_moreau_are_those_of_theory():
         <= finest.errors["sup_position"]
         <= finest.scatter["sup_position"][1]
     )
+
+
+def test_the_reference_of_a_motion_of_micrometres_is_tight_beside_it():
+    def spring(t, q, v, p, out):
+        out[0] = -4.0 * q[0]
+
+    scene = Scene(System(1, [[1.0]], spring), 1e-6, 0.0, (0.0, 10.0), LinearContacts(1.0, restitution=1.0))
+    order = study(scene, [Located(order=4)], h=[2e-2, 1e-2, 5e-3], repeats=1).order("Located(order=4)")
+    assert order is not None
+    assert abs(order.slope - 4.0) < 0.1
 
 
 def test_a_closed_form_is_a_reference_and_is_checked():
