@@ -62,7 +62,8 @@ def looks(
     windows : (k, 2) times in which one of the runs alone has struck, looked at just after where there are `wide` ones
     """
     if not every:
-        return Looks(_telling(run, end, CLOSE * MOST), (True, True), False, False)
+        t = increasing(_telling(run, end, CLOSE * MOST), _kept_in_hops(run, end))
+        return Looks(t, (True, True), False, False)
     most = min(max(LEAST, NUMBERS // run.scene.n_q), MOST)
     if wide is not None:
         even = wide[wide <= end]
@@ -91,7 +92,7 @@ def seen(look: Looks, end: float) -> Looks:
 def fewer(run: Trajectory, look: Looks, end: float) -> Looks:
     """Up to a time, as many of the kept states as are to be looked at: the other run has no others."""
     k = np.searchsorted(run.t, look.t, side="right") - 1
-    return look._replace(t=_chosen(run.t[k], run.v[k], end, MOST))
+    return look._replace(t=increasing(_chosen(run.t[k], run.v[k], end, MOST), _kept_in_hops(run, end)))
 
 
 def _telling(run: Trajectory, end: float, most: int) -> Array:
@@ -140,6 +141,13 @@ def _left_out(run: Trajectory, most: int) -> Array:
         found.append(0.5 * (time[places] + time[places + 1]))
     t = np.concatenate(found)
     return t[:: 1 + len(t) // most]
+
+
+def _kept_in_hops(run: Trajectory, end: float) -> Array:
+    """The kept times on either side of those middles: they may be the only ones in such a hop."""
+    k = np.searchsorted(run.t, _left_out(run, MOST), side="right")
+    t = run.t[np.clip(np.concatenate([k - 1, k]), 0, len(run.t) - 1)]
+    return t[t <= end]
 
 
 def event_times(run: Trajectory, other: Trajectory) -> Array:

@@ -159,6 +159,14 @@ def test_without_every_step_a_bar_that_ends_early_is_the_error_too(method):
     assert run.error.velocity.sup == pytest.approx(np.max(np.abs(v[:, 0] - np.cos(t))), rel=0.01)
 
 
+def test_of_many_kept_states_the_few_in_hops_that_are_not_followed_are_looked_at():
+    ball = scenes.bouncing_ball(h0=1.0, g=10.0, restitution=0.8, t_end=6.0)
+    run = simulate(ball, EventDriven(1e-6, 1e-6), keep=np.linspace(0.0, 6.0, 5001), error=True)
+    apart = np.max(np.abs(run.q - ball.exact(run.t)[0]))
+    assert apart > 1e-7
+    assert 0.5 < apart / run.error.position.sup < 2.0
+
+
 @pytest.mark.parametrize("scene", [scenes.sliding_block(), scenes.coulomb_oscillator()], ids=lambda s: s.name)
 def test_steps_with_friction_are_held_against_the_event_driven_run(scene):
     run = simulate(scene, Moreau(1.3e-3), error=True)
