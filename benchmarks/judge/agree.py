@@ -53,9 +53,12 @@ def disturbed(d: Description, share: float, size: float, seed: int) -> Descripti
     moved = min(share * size, 0.1 * own) if own > 0.0 else share * size  # a motion may have gone to 1e36 m
     q0 = np.array(d.q0) + moved * rng.uniform(-1.0, 1.0, d.n)
     t, faster = d.t_span[0], 1.0 + share * rng.uniform(-1.0, 1.0)
+    rougher = 1.0 + share * rng.uniform(-1.0, 1.0, len(d.T))
     new = replace(
         d, q0=numbers(q0), v0=numbers(faster * np.array(d.v0)), constant=off(d.constant), cosine=off(d.cosine),
         sine=off(d.sine),
+        mu=numbers(rougher * d.row("mu", len(d.T))), mu_s=numbers(rougher * np.array(d.mu_s)) if d.mu_s else (),
+        slip=numbers(faster * np.array(d.slip)), sway=numbers(faster * np.array(d.sway)),
         restitution=numbers([min(r * (1.0 + share * rng.uniform(-1.0, 1.0)), 0.5 + 0.5 * r) for r in d.rates()]),
     )  # fmt: skip
     if d.J:

@@ -223,7 +223,7 @@ def impact_law(d: Description, r: Run) -> Iterator[Finding]:
     """An impact leaves u+ >= -r u-, exactly that where it is the only contact, and never with a negative impulse."""
     log = r.motion.impacts
     log = log[log.kind == Kind.IMPACT]
-    if not len(log):
+    if not len(log) or d.law == "stronge":  # whose restitution is one of energy
         return
     wanted = -d.rates()[log.contact] * np.minimum(log.before, 0.0)
     scale = np.max(np.abs(log.before)) + np.max(np.abs(log.after))

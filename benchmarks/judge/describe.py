@@ -9,7 +9,17 @@ from typing import Any
 import numpy as np
 
 from benchmarks.judge import callbacks as f
-from lagrangian import Contacts, Harmonic, Joints, LinearContacts, LinearJoints, LinearSystem, Scene, System
+from lagrangian import (
+    Contacts,
+    Coulomb,
+    Harmonic,
+    Joints,
+    LinearContacts,
+    LinearJoints,
+    LinearSystem,
+    Scene,
+    System,
+)  # fmt: skip
 
 Row = tuple[float, ...]
 Rows = tuple[Row, ...]
@@ -26,6 +36,7 @@ class Description:
 
     restitution : one number, or one for each contact
     h : the step that the motion asks for
+    T, mu, mu_s, slip, law : of `Coulomb`, none without T; belts run by slip + sway cos(omega t)
     gaps, general, function : gaps, or all forces, or the force of a linear system as functions, whether they
         need it or not
     """
@@ -51,6 +62,12 @@ class Description:
     form: int = 0
     bend: Row = ()
     round: Row = ()
+    T: Rows = ()
+    mu: Row = ()
+    mu_s: Row = ()
+    slip: Row = ()
+    sway: Row = ()
+    law: str = "moreau"
     J: Rows = ()
     joint_offset: Row = ()
     joint_bend: Row = ()
@@ -85,6 +102,11 @@ class Description:
     def moving(self) -> bool:
         """Whether an obstacle or the frame moves by itself."""
         return any(self.amplitude) or any(self.frame)
+
+    @property
+    def belts(self) -> bool:
+        """Whether surfaces run along themselves."""
+        return any(self.slip) or any(self.sway)
 
     @property
     def nonlinear(self) -> bool:
@@ -156,7 +178,7 @@ class Description:
     def frequencies(self) -> list[float]:
         """Of everything that is driven from outside."""
         forced = any(self.cosine) or any(self.sine)
-        return [self.force_omega] * forced + [self.omega] * self.moving
+        return [self.force_omega] * forced + [self.omega] * (self.moving or any(self.sway))
 
     def _corners(self, period: float) -> Any:
         """Times at which parabolas follow each other, within a period or within the span."""
@@ -195,8 +217,22 @@ class Description:
                 f.gap_t if moves else None,
                 f.bias,
                 restitution=self.restitution,
+                friction=self._friction(),
             )
-        return LinearContacts(self.G, self.offset, self.restitution, motion=f.motion if moves else None)
+        return LinearContacts(
+            self.G,
+            self.offset,
+            self.restitution,
+            motion=f.motion if moves else None,
+            friction=self._friction(),
+        )
+
+    def _friction(self) -> Coulomb | None:
+        if not self.T:
+            return None
+        slip = self.row("slip", self.contacts)
+        moves = Harmonic(slip, self.row("sway", self.contacts), omega=self.omega) if any(self.sway) else slip
+        return Coulomb(self.mu, self.T, moves, mu_s=self.mu_s or None, law=self.law)
 
     def _joints(self) -> LinearJoints | Joints | None:
         if not self.J:

@@ -72,6 +72,15 @@ def rates(d: Description, t: Any, q: Any, v: Any) -> Any:
     return np.einsum("...ij,...j->...i", jacobians(d, q), v) - obstacles(d, t, 1)
 
 
+def sliding(d: Description, t: Any, v: Any) -> Any:
+    """Sliding velocities (..., contacts), zero without friction."""
+    if not d.T:
+        return np.zeros((*np.shape(v)[:-1], d.contacts))
+    t = np.asarray(t, dtype=float)[..., None]
+    sway = d.row("sway", d.contacts) * np.cos(d.omega * t)
+    return v @ np.array(d.T).T + d.row("slip", d.contacts) + sway
+
+
 def masses(d: Description, q: Any) -> Any:
     """M(q) (..., n, n)."""
     b = d.row("b")
@@ -103,7 +112,7 @@ def energy(d: Description, q: Any, v: Any) -> tuple[Any, Any]:
 
 def fed(d: Description) -> bool:
     """Whether something may put energy into the scene."""
-    return any(d.cosine) or any(d.sine) or d.moving
+    return any(d.cosine) or any(d.sine) or d.moving or d.belts
 
 
 def room(d: Description, t: float) -> float:

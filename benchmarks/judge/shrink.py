@@ -18,9 +18,23 @@ from benchmarks.judge.shapes import digits
 
 EMPTY = {
     "K": (), "C": (), "cosine": (), "sine": (), "constant": (), "amplitude": (), "frame": (), "pendulum": 0.0,
+    "slip": (), "sway": (), "mu_s": (),
     "spread": 0.0, "general": False, "function": False, "form": 0, "round": (), "bend": (), "restitution": 0.0,
 }  # fmt: skip
-PER_ROW = ("G", "offset", "restitution", "amplitude", "phase", "bend", "round")
+PER_ROW = (
+    "G",
+    "offset",
+    "restitution",
+    "amplitude",
+    "phase",
+    "bend",
+    "round",
+    "T",
+    "mu",
+    "mu_s",
+    "slip",
+    "sway",
+)
 PER_JOINT = ("J", "joint_offset", "joint_bend")
 PER_COORDINATE = ("q0", "v0", "constant", "cosine", "sine", "frame", "b")
 ROUNDED = ("M", "K", "C", "v0", "q0", "constant", "cosine", "sine", "G", "b", "force_omega", "omega", "h")
@@ -70,7 +84,7 @@ def _smaller(d: Description, places: list[int]) -> Description:
     square = {
         x: tuple(tuple(getattr(d, x)[i][j] for j in places) for i in places) for x in "MKC" if getattr(d, x)
     }
-    wide = {x: tuple(tuple(row[j] for j in places) for row in getattr(d, x)) for x in "GJ" if getattr(d, x)}
+    wide = {x: tuple(tuple(row[j] for j in places) for row in getattr(d, x)) for x in "GTJ" if getattr(d, x)}
     return replace(d, **rows, **square, **wide)
 
 

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.judge.describe import Description, numbers
+from benchmarks.judge.tidy_rough import ROUGH, Draft, pick, several
 
 GRAVITY = 0.0, 10.0, 9.81
 RESTITUTION = 0.0, 0.5, 0.8, 0.9, 1.0, 1.0
 SPANS, STEPS = (1.0, 2.0, 3.0, 5.0), (0.01, 0.002, 0.001)
-Draft = dict[str, Any]
 
 
 def tidy(seed: int, index: int) -> Description:
@@ -28,21 +28,13 @@ def tidy(seed: int, index: int) -> Description:
     draft.setdefault("offset", np.array(draft.pop("gap", 0.0)) - np.array(draft["G"]) @ draft["q0"])
     equal = rng.random() < 0.7
     restitution = pick(rng, *RESTITUTION) if equal else tuple(pick(rng, 0.0, 0.5, 1.0) for _ in range(m))
+    if draft.get("law", "newton") == "moreau" and np.ndim(restitution):
+        restitution = restitution[0]  # with several this law may give energy
     arrays = {k: numbers(np.asarray(v, dtype=float)) for k, v in draft.items() if np.ndim(v)}
     return Description(
         **(draft | arrays), t_span=(0.0, pick(rng, *SPANS)), h=pick(rng, *STEPS), restitution=restitution,
         family=family, general=bool(rng.random() < 0.2), gaps=bool(rng.random() < 0.2),
     )  # fmt: skip
-
-
-def pick(rng: Any, *values: Any) -> Any:
-    """One of these."""
-    return values[rng.integers(len(values))]
-
-
-def several(rng: Any, n: int, *values: float) -> Any:
-    """So many of these (n,)."""
-    return np.array([pick(rng, *values) for _ in range(n)])
 
 
 def stack(rng: Any, g: float) -> Draft:
@@ -167,4 +159,5 @@ def pendulum(rng: Any, g: float) -> Draft:
     }  # fmt: skip
 
 
-FAMILIES = {f.__name__: f for f in (stack, table, row, box, feet, stops, bowl, rod, pendulum)}
+SMOOTH = {f.__name__: f for f in (stack, table, row, box, feet, stops, bowl, rod, pendulum)}
+FAMILIES = SMOOTH | ROUGH

@@ -78,6 +78,6 @@ def before(d: Description, r: Run) -> Any:
 def _coupling(d: Description) -> Any:
     if d.curved or d.J or d.nonlinear:
         return np.ones((d.contacts, d.contacts), dtype=bool)
-    G = np.array(d.G)
-    W = G @ np.linalg.solve(d.matrix("M"), G.T)
-    return np.abs(W) > 1e-14 * np.max(np.abs(W))
+    rows = [np.array(d.G), *([np.array(d.T)] if d.T else [])]
+    W = sum(np.abs(a @ np.linalg.solve(d.matrix("M"), b.T)) for a in rows for b in rows)
+    return 1e-14 * np.max(W) < W

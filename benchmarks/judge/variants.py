@@ -62,7 +62,20 @@ def renumbered(d: Description, rng: Any) -> Variant:
     def mixed(x: Any) -> Any:
         return tuple(x[i] for i in order) if isinstance(x, tuple) and x else x
 
-    names = ("G", "offset", "restitution", "amplitude", "phase", "bend", "round")
+    names = (
+        "G",
+        "offset",
+        "restitution",
+        "amplitude",
+        "phase",
+        "bend",
+        "round",
+        "T",
+        "mu",
+        "mu_s",
+        "slip",
+        "sway",
+    )
     return Variant("contacts renumbered", replace(d, **{k: mixed(getattr(d, k)) for k in names}), order=order)
 
 
@@ -94,7 +107,7 @@ def _turned(d: Description, T: Any, name: str) -> Variant:
         d, M=matrix(d.M), K=matrix(d.K), C=matrix(d.C),
         q0=numbers(T @ np.array(d.q0)), v0=numbers(T @ np.array(d.v0)),
         constant=covector(d.constant), cosine=covector(d.cosine), sine=covector(d.sine), b=covector(d.b),
-        G=rows(d.G), J=rows(d.J), frame=numbers(T @ np.array(d.frame)) if d.frame else (),
+        G=rows(d.G), T=rows(d.T), J=rows(d.J), frame=numbers(T @ np.array(d.frame)) if d.frame else (),
     )  # fmt: skip
     return Variant(name, new, unit=back)
 
@@ -117,7 +130,8 @@ def in_units(d: Description, length: float, time: float, mass: float) -> Descrip
     """The same in other units: every length, time and mass is so many times as large a number."""
     units = {
         "M": mass, "K": mass / time**2, "C": mass / time, "q0": length, "v0": length / time, "t_span": time,
-        "offset": length, "amplitude": length, "frame": length, "round": length, "joint_offset": length,
+        "offset": length, "slip": length / time, "sway": length / time,
+        "amplitude": length, "frame": length, "round": length, "joint_offset": length,
         "constant": mass * length / time**2, "cosine": mass * length / time**2, "sine": mass * length / time**2,
         "b": 1.0 / length,
     }  # fmt: skip
@@ -189,7 +203,7 @@ def fits(name: str, d: Description, method: str) -> bool:
         "contacts": d.contacts > 1,
         "order": d.n > 1,
         "units": d.n > 1 and not d.curved and not round_joints,
-        "time": not any(d.frame) and not (d.form and d.moving),
+        "time": not any(d.frame) and not any(d.sway) and not (d.form and d.moving),
         "rest": not (carried and method in ("located", "located-tolerance")),
         "general": method.startswith("event")
         and not (d.general or d.nonlinear or d.function or any(d.frame)),
