@@ -175,8 +175,12 @@ def depth(d: Description, r: Run) -> float:
 
 
 def energy(d: Description, r: Run) -> Iterator[Finding]:
-    """Nothing that is not fed gains energy, but for what the order of the method explains."""
-    if physics.fed(d):
+    """Nothing that is not fed gains energy, but for what the order of the method explains.
+
+    By Newton's law of impact with friction it may, and by Moreau's where restitution differs.
+    """
+    law_gives = d.T and (d.law == "newton" or (d.law == "moreau" and np.ptp(d.rates()) > 0.0))
+    if physics.fed(d) or law_gives:
         return
     until = judged_until(d, r)
     r = up_to(r, until)

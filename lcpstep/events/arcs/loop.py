@@ -6,7 +6,8 @@ positive for
     h < (g' + sqrt(g'^2 + 2 A g)) / A
 
 from any place on; steps of that length come to the first zero from below, at the end as fast as Newton's, and pass
-none. Where g and g' are zero at the beginning, |g'''| <= B gives h < 3 g'' / B.
+none. Where g and g' are zero at the beginning, |g'''| <= B gives h < 3 g'' / B, and where g'' is as well,
+|g''''| <= C gives h < 4 g''' / C.
 """
 
 from __future__ import annotations
@@ -106,7 +107,7 @@ def follow(s: Arc, slides: bool) -> None:
 
 def first_end(s: Arc, limit: float) -> float:
     """Time after the base at which the arc ends, infinite where it is not before the limit; which way into `side`."""
-    here, second, third = bends(s)
+    here, jerk, second, third, fourth = bends(s)
     tau, sides = 0.0, 1 if s.direction != 0.0 else 2
     D = 0.0
     _, rate = rise(s, 0.0)
@@ -117,7 +118,7 @@ def first_end(s: Arc, limit: float) -> float:
             start = s.room if sides == 1 else s.most + way * s.phi
             g, u = start + way * D, way * rate
             if tau == 0.0 and g == 0.0:
-                clear = leave(u, way * here, second, third, s.noise)
+                clear = leave(u, way * here, way * jerk, second, third, fourth, s.noise)
             else:
                 clear = first_zero(g, u, -0.5 * second)
             if clear < h:
@@ -146,12 +147,19 @@ def touch(s: Arc, tau: float, u: float) -> float:
     return 0.0
 
 
-def leave(u: float, bend: float, second: float, third: float, noise: float) -> float:
-    """How long a function that begins at zero stays positive; a rate that is zero to rounding leaves it to `bend`."""
+def leave(
+    u: float, bend: float, jerk: float, second: float, third: float, fourth: float, noise: float
+) -> float:
+    """How long a function that begins at zero stays positive; of derivatives zero to rounding the next one tells.
+
+    As where a push that is at its least has all the friction: what begins to slide does so as the cube of time.
+    """
     u = 0.0 if abs(u) <= noise else u
-    h = first_zero(0.0, u, -0.5 * second)
-    if u >= 0.0 and bend > 0.0 and third > 0.0:
+    h, none = first_zero(0.0, u, -0.5 * second), NOISE * second
+    if u >= 0.0 and bend > none and third > 0.0:
         h = max(h, 3.0 * bend / third)
+    elif u >= 0.0 and bend >= -none and jerk > 0.0 and fourth > 0.0:
+        h = max(h, 4.0 * jerk / fourth)
     return h
 
 

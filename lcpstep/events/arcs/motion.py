@@ -149,23 +149,27 @@ def rise(s: Arc, tau: float) -> tuple[float, float]:
     return D, rate
 
 
-def bends(s: Arc) -> tuple[float, float, float]:
-    """D'' at the base, and what |D''| and |D'''| never exceed on the arc.
+def bends(s: Arc) -> tuple[float, float, float, float, float]:
+    """D'' and D''' at the base, and what |D''|, |D'''| and |D''''| never exceed on the arc.
 
     The free motion obeys its own equation in every derivative.
     """
-    b2, o2 = s.belt * s.belt, s.Omega * s.Omega
+    b, o = abs(s.belt), abs(s.Omega)
+    b2, o2 = b * b, o * o
     belt, force = b2 * hypot(s.P1, s.Q1), o2 * hypot(s.P2, s.Q2)
     here = -b2 * (s.P1 * s.cos1 + s.Q1 * s.sin1) - o2 * (s.P2 * s.cos2 + s.Q2 * s.sin2)
-    second, third = belt + force, abs(s.belt) * belt + abs(s.Omega) * force
+    jerk = b2 * s.belt * (s.P1 * s.sin1 - s.Q1 * s.cos1) + o2 * s.Omega * (s.P2 * s.sin2 - s.Q2 * s.cos2)
+    second, third, fourth = belt + force, b * belt + o * force, b2 * belt + o2 * force
     if s.direction != 0.0 and s.w2 > s.delta * s.delta:
-        b = -2.0 * s.delta * s.a - s.w2 * s.dzeta
-        c = -2.0 * s.delta * b - s.w2 * s.a
-        d = -2.0 * s.delta * c - s.w2 * b
-        here += b
-        second += envelope(s.delta, s.w2, b, c)
-        third += envelope(s.delta, s.w2, c, d)
-    return here, second, third
+        x = -2.0 * s.delta * s.a - s.w2 * s.dzeta
+        y = -2.0 * s.delta * x - s.w2 * s.a
+        z = -2.0 * s.delta * y - s.w2 * x
+        here += x
+        jerk += y
+        second += envelope(s.delta, s.w2, x, y)
+        third += envelope(s.delta, s.w2, y, z)
+        fourth += envelope(s.delta, s.w2, z, -2.0 * s.delta * z - s.w2 * y)
+    return here, jerk, second, third, fourth
 
 
 def bend_at(s: Arc, tau: float) -> float:

@@ -22,12 +22,12 @@ from lcpstep.events.codes import (
     STICKS,
 )
 from lcpstep.events.contacts.bracing import braced
-from lcpstep.events.contacts.equations import force_noise, let_stick
+from lcpstep.events.contacts.equations import let_stick
+from lcpstep.events.contacts.leaning import stand, stand_alone
 from lcpstep.events.contacts.several import opened_or_closed
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints, hold_modes
+from lcpstep.events.rows.contacts import accelerate_on_joints, hold_modes
 from lcpstep.events.rows.equations import size_of_acceleration
-from lcpstep.events.rows.held import constrain
 from lcpstep.events.rows.keep import tell
 from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
 from lcpstep.events.rows.problem import (
@@ -42,8 +42,7 @@ from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import motion_of
 from lcpstep.kernels.repose import moves, stay
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
-from lcpstep.kernels.vectors import clear, copy, product
-from lcpstep.pointers import abs, after, max
+from lcpstep.pointers import abs, max
 
 # Of accelerations that hang together: as much solving for the forces leaves of one that is none
 LEANING = 1e-12
@@ -249,46 +248,3 @@ def take_over_modes(s: Rubbing) -> None:
         leaning += s.mode[c] == LEANS
     if leaning > 0 and not stand(s):
         stand_alone(s)
-
-
-def stand_alone(s: Rubbing) -> None:
-    """Of those that lean those stick that nothing else keeps from sliding, until their forces leave the cone.
-
-    What is wedged, or stands on three feet, leans with the forces found: with a tangent held a normal may have none.
-    """
-    for c in range(s.n_c):
-        i = (
-            s.n_j + s.n_c + c
-        )  # it depends on the rows held where what moves it alone does not, once these are kept
-        if s.mode[c] == LEANS and not (hold_modes(s.rows) and abs(gives(s, i)) <= EDGE * s.W[i * s.n_r + i]):
-            s.mode[c] = STICKS
-
-
-def gives(s: Rubbing, i: int) -> float:
-    """What an impulse along row i makes of its velocity once the rows held are kept, and of all, into `dv`."""
-    copy(s.dv, after(s.MR, i * s.n_q), s.n_q)
-    clear(s.shifted_rate, s.n_r)
-    constrain(s.rows, s.dv, s.shifted_rate)
-    return product(s.R, s.dv, i, s.n_q)
-
-
-def stand(s: Rubbing) -> bool:
-    """Let those that stick carry what others lean on them with, if they can; modes are as before where they cannot.
-
-    Feet that share a direction may brace themselves against each other: their forces are known in sum alone.
-    """
-    for c in range(s.n_c):
-        s.mode[c] = STICKS if s.mode[c] == LEANS else s.mode[c]
-    stands = hold_modes(s.rows)
-    if stands:
-        accelerate_as_held(s.rows)
-    for c in range(s.n_c):
-        i = s.n_j + c
-        if s.mode[c] == STICKS:
-            most = (1.0 - EDGE) * s.mu_s[c] * s.multiplier[i]
-            stands = stands and abs(s.multiplier[i + s.n_c]) < most
-        elif s.mode[c] == SLIDES:
-            stands = stands and s.multiplier[i] >= -force_noise(s)
-    for c in range(s.n_c):
-        s.mode[c] = s.mode[c] if stands else s.new_mode[c]
-    return stands

@@ -25,8 +25,9 @@ from lcpstep.events.contacts.equations import measure, share_left
 from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
 from lcpstep.events.contacts.hops import carry, find_landings, interrupt, shortest_hop
 from lcpstep.events.contacts.impact import forget_terms
+from lcpstep.events.contacts.leaning import gives, wavers
 from lcpstep.events.contacts.loose import first_stray
-from lcpstep.events.contacts.modes import decide, gives, undecided
+from lcpstep.events.contacts.modes import decide, undecided
 from lcpstep.events.contacts.moments import jumps, locate, of_sliding, turns_at_once
 from lcpstep.events.contacts.parting import part_before
 from lcpstep.events.contacts.passing import take_over
@@ -212,11 +213,20 @@ def look_ahead(s: Rubbing, h: float) -> int:
             return NOT_FINITE
         find_standing(s)
         code = decide(s)
-        if code != DONE or ahead >= FARTHEST or (not undecided(s) and differ(s)):
+        if code != DONE or ahead >= FARTHEST or (not undecided(s) and tells(s)):
             break
         ahead *= FURTHER
     hold_modes(s.rows)  # the old ones, for the rest of the step
     return code
+
+
+def tells(s: Rubbing) -> bool:
+    """Whether the same are others of which more is known than that a contact is at the edge of its cone."""
+    some = False
+    for c in range(s.n_c):
+        other = s.new_mode[c] != s.mode[c] or s.new_direction[c] != s.direction[c]
+        some = some or (other and not wavers(s, c))
+    return some
 
 
 def meet(s: Rubbing, c: int) -> int:

@@ -1,0 +1,77 @@
+"""What begins at the very edge of its friction cone, under forces that leave it as the square of time."""
+
+import math
+
+import numpy as np
+import pytest
+
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearSystem, Scene
+from lcpstep import EventDriven, Located, Status, simulate
+
+MU, G0, A, END = 0.5, 10.0, 4.0, 2.0
+METHODS = {
+    "event-driven": (EventDriven(), 1e-11),
+    "loose": (EventDriven(1e-6, 1e-6), 1e-6),
+    "order 2": (Located(1e-2), 1e-4),
+    "order 4": (Located(1e-2, order=4), 1e-8),
+    "tolerance": (Located(1e-2, order=4, tolerance=1e-6), 1e-6),
+}
+PUSH = MU * np.array([2.0 * G0, 0.0]), [-MU * G0, 0.0]  # mu m g (2 - cos t), under its weight
+LOAD = np.array([MU * G0, A]), [0.0, -A]  # mu m g, under a load that falls to its least
+
+
+def block(constant, cosine, start, mu_s=None, extra=0.0):
+    """A block of 1 kg on a floor that has held it, to the edge; `extra` keeps it out of closed form."""
+    force = Harmonic(constant=np.array(constant) - [0.0, G0], cosine=cosine, omega=1.0)
+    contact = LinearContacts(
+        [[0.0, 1.0]], friction=Coulomb(MU if mu_s is None else 0.5 * MU, [[1.0, 0.0]], mu_s=mu_s)
+    )
+    system = LinearSystem(np.eye(2), C=np.diag([0.0, extra]), force=force)
+    return Scene(system, [0.0, 0.0], [0.0, 0.0], (start, start + END), contacts=contact)
+
+
+@pytest.mark.parametrize("start", [0.0, 2.0 * math.pi, 64.0 * math.pi], ids=["0", "a period", "32 periods"])
+@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize(
+    ("force", "pull", "extra"), [(PUSH, MU * G0, 0.0), (PUSH, MU * G0, 1.0), (LOAD, MU * A, 0.0)],
+    ids=["push", "push, by steps", "load"],
+)  # fmt: skip
+def test_a_block_leaves_by_the_square_of_time(force, pull, extra, name, start):
+    """x'' = pull (1 - cos t) from the edge on."""
+    method, error = METHODS[name]
+    run = simulate(block(*force, start, extra=extra), method)
+    assert run.status == Status.DONE
+    assert run.q[-1, 0] == pytest.approx(pull * (0.5 * END**2 - (1.0 - math.cos(END))), abs=error)
+    assert len(run.impacts) < 10
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_so_does_one_that_has_less_friction_then(name):
+    """Held by mu_s = 1/2, to the edge, and by half of it from then on: x'' = mu g (3/2 - cos t).
+
+    When it lets go forces tell to the root of their rounding, 1e-8 s.
+    """
+    method, error = METHODS[name]
+    run = simulate(block(*PUSH, 0.0, mu_s=MU), method)
+    assert run.status == Status.DONE
+    wanted = MU * G0 * (0.75 * END**2 - (1.0 - math.cos(END)))
+    assert run.q[-1, 0] == pytest.approx(wanted, abs=max(error, 1e-7))
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_block_on_one_that_a_belt_takes_along_slides_as_its_spring_begins_to_hold_it(name):
+    """Both would move with mu g, by all the friction between them, which the spring adds to."""
+    k, m = 10.0, 2.0
+    lower, upper = [1.0, 0.0, 0.0, 0.0], [-1.0, 0.0, 1.0, 0.0]
+    contacts = LinearContacts(
+        [[0.0, 1.0, 0.0, 0.0], [0.0, -1.0, 0.0, 1.0]], friction=Coulomb(MU, [lower, upper], slip=[5.0, 0.0])
+    )
+    weight = np.array([0.0, -m * G0, 0.0, -m * G0])
+    system = LinearSystem(m * np.eye(4), K=np.diag([0.0, 0.0, k, 0.0]), force=Harmonic(constant=weight))
+    scene = Scene(system, np.zeros(4), np.zeros(4), (0.0, 0.5), contacts=contacts)
+    method, error = METHODS[name]
+    run = simulate(scene, method)
+    assert run.status == Status.DONE
+    w = math.sqrt(k / m)  # the upper one slides: m x'' = -mu m g - k x
+    upper = -MU * G0 / w**2 * (1.0 - math.cos(0.5 * w))
+    assert run.q[-1, [0, 2]] == pytest.approx([-0.5 * MU * G0 * 0.5**2, upper], abs=error)
