@@ -67,10 +67,11 @@ def base(d: Description, r: Run) -> Base:
     unclear = np.flatnonzero(noise > max(TOLD, 100.0 * r.tolerance) * size)
     told = float(times[unclear[0]]) if len(unclear) else np.inf
     start = d.t_span[0]
-    if (
-        told_until(d, r) <= start
-    ):  # walls that strike together where it begins: rounding says which is the first
+    until = told_until(d, r)
+    if until <= start:  # walls that strike together where it begins: rounding says which is the first
         told = start
+    elif d.T:  # later as well, where friction makes an impact of both of two that do without each other
+        told = min(told, until)
     allowed = floor + NOISE * noise
     b = Base(d, r, times, q, allowed, told)
     unlike = [x[0] for other in companions if other.done and (x := without_partner(b, other, Variant("", d)))]
