@@ -75,3 +75,30 @@ def test_a_block_on_one_that_a_belt_takes_along_slides_as_its_spring_begins_to_h
     w = math.sqrt(k / m)  # the upper one slides: m x'' = -mu m g - k x
     upper = -MU * G0 / w**2 * (1.0 - math.cos(0.5 * w))
     assert run.q[-1, [0, 2]] == pytest.approx([-0.5 * MU * G0 * 0.5**2, upper], abs=error)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_so_does_a_block_on_two_feet(name):
+    """It is too low to tip over."""
+    method, error = METHODS[name]
+    contacts = LinearContacts(
+        [[0.0, 1.0, -0.5], [0.0, 1.0, 0.5]], friction=Coulomb(MU, [[1.0, 0.0, 0.1]] * 2)
+    )
+    constant, cosine = PUSH
+    force = Harmonic(constant=[constant[0], -G0, 0.0], cosine=[*cosine, 0.0], omega=1.0)
+    system = LinearSystem(np.diag([1.0, 1.0, 0.1]), force=force)
+    run = simulate(Scene(system, np.zeros(3), np.zeros(3), (0.0, END), contacts=contacts), method)
+    assert run.status == Status.DONE
+    assert run.q[-1, 0] == pytest.approx(MU * G0 * (0.5 * END**2 - (1.0 - math.cos(END))), abs=error)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_bead_braced_between_two_walls_presses_on_none_of_them_from_outside(name):
+    """The load goes over from one wall to the other while a spring pulls along them."""
+    method = METHODS[name][0] if name != "tolerance" else Located(8e-3, tolerance=1e-4)
+    contacts = LinearContacts([[0.0, 1.0], [0.0, -1.0]], 0.0, friction=Coulomb(MU, [[1.0, 0.0]] * 2))
+    force = Harmonic(constant=[0.0, -10.0], cosine=[0.0, 20.0], omega=1.0)
+    system = LinearSystem(np.eye(2), K=np.diag([1.0, 0.0]), force=force)
+    run = simulate(Scene(system, [0.0, 0.0], [1.0, 0.0], (0.0, 2.0), contacts=contacts), method)
+    assert run.status == Status.DONE
+    assert np.min(run.impulse) > -1e-12

@@ -12,7 +12,7 @@ from lcpstep.events.contacts.equations import force_noise
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import accelerate_as_held, hold_modes
 from lcpstep.events.rows.held import constrain
-from lcpstep.kernels.vectors import clear, copy, product
+from lcpstep.kernels.vectors import clear, copy, copy_indices, product
 from lcpstep.pointers import abs, after
 
 
@@ -42,9 +42,10 @@ def wavers(s: Rubbing, c: int) -> bool:
     """
     if s.mode[c] != STICKS or s.new_mode[c] != LEANS:
         return False
-    s.mode[c] = LEANS
+    copy_indices(s.tried, s.mode, s.n_c)
+    copy_indices(s.mode, s.new_mode, s.n_c)
     alone = not kept_by_others(s, c)
-    s.mode[c] = STICKS
+    copy_indices(s.mode, s.tried, s.n_c)
     return alone
 
 

@@ -6,12 +6,12 @@ import cython
 
 from lcpstep.events.codes import OPEN
 from lcpstep.events.contacts.equations import measure, measure_gaps
-from lcpstep.events.contacts.leaning import gives, wavers
+from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.loose import first_stray
 from lcpstep.events.contacts.modes import decide, undecided
 from lcpstep.events.contacts.moments import of_sliding
 from lcpstep.events.contacts.state import GUARDS
-from lcpstep.events.contacts.step import arrive, find_standing, mark_resting, of_force
+from lcpstep.events.contacts.step import arrive, find_standing, mark_resting, of_force, tells
 from lcpstep.events.contacts.surfaces import FREE
 from lcpstep.events.rows.contacts import add_impulse, hold_modes, list_by_row, still
 from lcpstep.events.rows.equations import respond_to
@@ -159,8 +159,7 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
         code = decide(s)
         waits = code == DONE and undecided(s)
         # Another mode, or its load left to others that hold it too
-        changes = s.new_mode[c] != s.mode[c] or s.new_loaded[c] != s.loaded[c]
-        changes = changes and not wavers(s, c)
+        changes = (s.new_mode[c] != s.mode[c] and tells(s)) or s.new_loaded[c] != s.loaded[c]
         hold_modes(s.rows)  # the old ones, for what is stepped further, and the rest of the step
         if code != DONE or ahead >= h or (changes and not waits):
             break
