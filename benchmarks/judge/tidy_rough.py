@@ -25,10 +25,14 @@ def several(rng: Any, n: int, *values: float) -> Any:
 
 
 def rough(rng: Any, mu: Any, T: Any) -> Draft:
-    """Friction of these coefficients, perhaps more of it where something sticks."""
+    """Friction of these coefficients; perhaps they are those of what sticks, or that has more."""
     mu = np.asarray(mu, dtype=float)
-    more = {"mu_s": mu * pick(rng, 1.0, 1.25, 2.0) + pick(rng, 0.0, 0.0, 0.1)} if rng.random() < 0.3 else {}
-    return {"T": np.atleast_2d(T), "mu": mu, "law": pick(rng, "moreau", "moreau", "newton")} | more
+    drawn = {"T": np.atleast_2d(T), "mu": mu, "law": pick(rng, "moreau", "moreau", "newton")}
+    if rng.random() > 0.3:
+        return drawn
+    if rng.random() < 0.5:
+        return drawn | {"mu_s": mu, "mu": pick(rng, 0.5, 0.8, 1.0) * mu}
+    return drawn | {"mu_s": mu * pick(rng, 1.0, 1.25, 2.0) + pick(rng, 0.0, 0.0, 0.1)}
 
 
 def slope(rng: Any, g: float) -> Draft:
@@ -196,4 +200,17 @@ def crate(rng: Any, g: float) -> Draft:
     return draft | ({"slip": pick(rng, 1.0, -1.0) * np.eye(len(G))[1]} if rng.random() < 0.3 else {})
 
 
-ROUGH = {f"rough {f.__name__}": f for f in (slope, pushed, ladder, spin, pile, tip, vee, pulley, rail, crate)}
+def cart(rng: Any, g: float) -> Draft:
+    """A cart on a rough rail that a pendulum drags along, its inertia that of small swings."""
+    m, mu = pick(rng, 1.0, 2.0), pick(rng, 0.1, 0.25, 0.5)
+    turn = pick(rng, 0.0, 0.5, 0.5 * math.pi, -0.5 * math.pi, math.pi)
+    return {
+        "G": np.array([[0.0, 1.0, 0.0]]), "gap": [0.0], "q0": [0.0, 0.0, turn],
+        "v0": [pick(rng, 0.0, 1.0), 0.0, pick(rng, 0.0, 0.0, 1.0)], "pendulum": m * g, "b": [0.0, 0.0, 1.0],
+        "M": np.array([[2.0 * m, 0.0, m], [0.0, 2.0 * m, 0.0], [m, 0.0, m]]), "constant": [0.0, -2.0 * m * g, 0.0],
+    } | rough(rng, [mu], [1.0, 0.0, 0.0])  # fmt: skip
+
+
+ROUGH = {
+    f"rough {f.__name__}": f for f in (slope, pushed, ladder, spin, pile, tip, vee, pulley, rail, crate, cart)
+}
