@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Coulomb, Harmonic, LinearContacts, LinearSystem, Scene
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Status, simulate
 
 MU, G0, A, END = 0.5, 10.0, 4.0, 2.0
@@ -18,6 +18,12 @@ METHODS = {
 }
 PUSH = MU * np.array([2.0 * G0, 0.0]), [-MU * G0, 0.0]  # mu m g (2 - cos t), under its weight
 LOAD = np.array([MU * G0, A]), [0.0, -A]  # mu m g, under a load that falls to its least
+HEAVY = np.array([[2.0, 0.0, 1.0], [0.0, 2.0, 0.0], [1.0, 0.0, 1.0]])
+
+
+def swing(t, q, v, p, out):
+    """A pendulum of 1 kg on a cart of the same mass, its inertia that of small swings."""
+    out[0], out[1], out[2] = 0.0, -2.0 * 10.0, -10.0 * math.sin(q[2])
 
 
 def block(constant, cosine, start, mu_s=None, extra=0.0):
@@ -102,3 +108,16 @@ def test_a_bead_braced_between_two_walls_presses_on_none_of_them_from_outside(na
     run = simulate(Scene(system, [0.0, 0.0], [1.0, 0.0], (0.0, 2.0), contacts=contacts), method)
     assert run.status == Status.DONE
     assert np.min(run.impulse) > -1e-12
+
+
+@pytest.mark.parametrize("beyond", [1e-10, 1e-12, 1e-14, -1e-12])
+@pytest.mark.parametrize("name", METHODS)
+def test_what_is_pushed_beyond_its_edge_for_a_moment_stays(name, beyond):
+    """By so much of mu m g, less than what it is known to, before the push falls as the square of time."""
+    pull = System(n_q=3, mass=HEAVY, force=swing)
+    contact = LinearContacts([[0.0, 1.0, 0.0]], friction=Coulomb(0.5 * (1.0 - beyond), [[1.0, 0.0, 0.0]]))
+    scene = Scene(pull, [0.0, 0.0, -0.5 * math.pi], [0.0, 0.0, 1.0], (0.0, 0.2), contacts=contact)
+    run = simulate(scene, METHODS[name][0])
+    assert run.status == Status.DONE
+    assert abs(run.q[-1, 0]) < 1e-15
+    assert len(run.impacts) < 10

@@ -1,7 +1,9 @@
 """Scenes as people write them, before the judge."""
 
+import numpy as np
 import pytest
 
+from benchmarks.judge import physics
 from benchmarks.judge.case import judged
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import WAYS, run
@@ -11,7 +13,7 @@ from tests.marks import shared
 
 
 def test_they_are_of_all_families_and_printed_as_python():
-    drawn = [tidy(2, k) for k in range(100)]
+    drawn = [tidy(2, k) for k in range(200)]
     assert {d.family for d in drawn} == set(FAMILIES)
     for k, d in enumerate(drawn):
         assert eval(repr(d), {"Description": Description}) == d == tidy(2, k)
@@ -20,6 +22,20 @@ def test_they_are_of_all_families_and_printed_as_python():
 def test_they_begin_outside_of_obstacles():
     for k in range(100):
         assert run(tidy(3, k), "event-driven").status != "refused"
+
+
+def test_friction_of_a_scene_is_that_of_its_numbers():
+    """Sliding velocities and Coulomb's cone, by the equations alone: nothing of the library's."""
+    for k in range(60):
+        d = tidy(4, k)
+        if not d.T:
+            continue
+        scene, v = d.scene(), np.array(d.v0)
+        rubbing = scene.contacts.friction
+        u = rubbing.sliding(0.0, np.array(d.q0), v, scene.p, d.contacts)
+        assert u == pytest.approx(physics.sliding(d, 0.0, v), abs=1e-15)
+        m = run(d, "event-driven").motion
+        assert np.all(np.abs(m.friction_impulse) <= np.max([d.mu, d.mu_s or d.mu], axis=0) * m.impulse + 1e-9)
 
 
 def test_twenty_scenes():

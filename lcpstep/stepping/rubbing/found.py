@@ -273,10 +273,10 @@ def interrupt(s: Strides, t: float, tau: float) -> None:
 def locate(s: Strides, g: int, h: float) -> float:
     """Time from now at which guard g acts, the step of that length being the last one made; or NOWHERE.
 
-    One that begins within its band, as where a contact has just opened, acts where it is seen below zero: there it is
-    zero to rounding, and steps shorter and shorter would come back to that.
+    One that begins within its band acts where it is seen below zero, beyond it, of a force, where it is as far again.
     """
-    t0, tau, slope, crossed = s.clock.t0, s.found * h, s.slope, s.end_value[g] < 0.0
+    zero = 0.0 if s.armed[g] == 1 or is_motion(s, g) else min(0.0, 2.0 * s.begin_value[g])
+    t0, tau, slope, crossed = s.clock.t0, s.found * h, s.slope, s.end_value[g] < zero
     if tau <= 0.0:
         return 0.0
     low = low_flight(s, g)
@@ -284,10 +284,10 @@ def locate(s: Strides, g: int, h: float) -> float:
         return low if s.step(t0, low) and read_guards(s, t0 + low, s.y_new) else NOWHERE
     s.scan.bracket.begin(0.0, h, True, tau)
     while s.scan.bracket.seek(2.0 * RESOLUTION * (abs(t0) + tau)):
-        tau = s.scan.bracket.x  # the step of that length is the motion taken, whatever is found of it
+        tau = s.scan.bracket.x  # the step of that length is the motion taken
         if not (s.step(t0, tau) and read_guards(s, t0 + tau, s.y_new)):
             return NOWHERE
-        value = s.value[g]
+        value = s.value[g] - zero
         crossed = crossed or value < 0.0 or (value == 0.0 and s.armed[g] == 1)
         if s.scan.bracket.looks > 1 and value != s.scan.bracket.value:
             slope = (value - s.scan.bracket.value) / (tau - s.scan.bracket.seen)
