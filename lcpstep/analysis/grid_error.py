@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.analysis.variation import PeriodMap
-from lcpstep.maps.batch import Periods, periods
+from lcpstep.maps.batch import PER_PERIOD, Periods, periods
 from lcpstep.maps.one_by_one import continued
 from lcpstep.simulation import Method, simulate
 
@@ -93,10 +93,7 @@ def on_other_grids(P: PeriodMap, starts: Array, n: int, drop: int, most: int, se
         x = run.final
         if k >= drop:
             kept.append(run)
-    joined = {
-        name: np.concatenate([getattr(run, name) for run in kept], axis=1)
-        for name in ("states", "time", "before", "after", "landed", "impacts", "ends", "tangents")
-    }
+    joined = {name: np.concatenate([getattr(run, name) for run in kept], axis=1) for name in PER_PERIOD}
     return replace(kept[-1], **joined)
 
 

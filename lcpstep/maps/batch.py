@@ -25,6 +25,8 @@ from lcpstep.stepping.moreau import Moreau
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+# Fields of `Periods` that have an entry for each kept period
+PER_PERIOD = "states", "time", "before", "after", "struck", "landed", "resting", "impacts", "ends", "tangents"
 IMPACTS_KEPT = 64  # of each period; their number is known beyond
 
 
