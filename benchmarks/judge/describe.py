@@ -21,6 +21,21 @@ from lagrangian import (
     System,
 )  # fmt: skip
 
+# Fields of a `Description` that have an entry for each contact
+PER_ROW = (
+    "G",
+    "offset",
+    "restitution",
+    "amplitude",
+    "phase",
+    "bend",
+    "round",
+    "T",
+    "mu",
+    "mu_s",
+    "slip",
+    "sway",
+)
 Row = tuple[float, ...]
 Rows = tuple[Row, ...]
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.errors import NoSuchExample
 
 from benchmarks.judge import physics
-from benchmarks.judge.describe import Description
+from benchmarks.judge.describe import PER_ROW, Description
 from benchmarks.judge.shapes import digits
 
 EMPTY = {
@@ -21,20 +21,6 @@ EMPTY = {
     "slip": (), "sway": (), "mu_s": (),
     "spread": 0.0, "general": False, "function": False, "form": 0, "round": (), "bend": (), "restitution": 0.0,
 }  # fmt: skip
-PER_ROW = (
-    "G",
-    "offset",
-    "restitution",
-    "amplitude",
-    "phase",
-    "bend",
-    "round",
-    "T",
-    "mu",
-    "mu_s",
-    "slip",
-    "sway",
-)
 PER_JOINT = ("J", "joint_offset", "joint_bend")
 PER_COORDINATE = ("q0", "v0", "constant", "cosine", "sine", "frame", "b")
 ROUNDED = ("M", "K", "C", "v0", "q0", "constant", "cosine", "sine", "G", "b", "force_omega", "omega", "h")

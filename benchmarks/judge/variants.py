@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.judge import physics
-from benchmarks.judge.describe import Description, numbers
+from benchmarks.judge.describe import PER_ROW, Description, numbers
 from benchmarks.judge.scales import EPS, scales
 
 STILL = 1e-14  # of the speed that forces would give, or the way: what is left of one by rounding
@@ -62,21 +62,9 @@ def renumbered(d: Description, rng: Any) -> Variant:
     def mixed(x: Any) -> Any:
         return tuple(x[i] for i in order) if isinstance(x, tuple) and x else x
 
-    names = (
-        "G",
-        "offset",
-        "restitution",
-        "amplitude",
-        "phase",
-        "bend",
-        "round",
-        "T",
-        "mu",
-        "mu_s",
-        "slip",
-        "sway",
+    return Variant(
+        "contacts renumbered", replace(d, **{k: mixed(getattr(d, k)) for k in PER_ROW}), order=order
     )
-    return Variant("contacts renumbered", replace(d, **{k: mixed(getattr(d, k)) for k in names}), order=order)
 
 
 def reordered(d: Description, rng: Any) -> Variant:

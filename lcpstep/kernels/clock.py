@@ -91,9 +91,13 @@ class Clock:
             t = self.t0
         self.high = self.jump = t
 
+    def moment(self, t: float) -> float:
+        """What an impact near time t must be off a corner to be told from it."""
+        return 2.0 * NUDGE * max(abs(t), self.scale)
+
     def leaves_to_corner(self, t: float) -> bool:
         """Whether a time cannot be told from the corner that ends its smooth interval, which is not the last."""
-        return t + 2.0 * NUDGE * max(abs(t), self.scale) >= self.high and self.high < self.t_end
+        return t + self.moment(t) >= self.high and self.high < self.t_end
 
     def find_corners(self, t: float) -> None:
         """The smooth interval that begins at t or contains it."""

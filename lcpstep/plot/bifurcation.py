@@ -104,7 +104,7 @@ def panel(ax: Any, data: Any, name: str, colour: str | None = None, larger: floa
     checks.has("data", data, "attrs", "a dataset of lcpstep.analysis.bifurcation")
     x, y = points(data, name)
     size = larger * float(np.clip(2400.0 / len(data[str(data.attrs["parameter"])]), 2.5, 4.0))
-    contact = contacts(data, name) if colour is None else np.zeros(len(y))
+    contact = contacts(data, name, len(y)) if colour is None else np.zeros(len(y))
     several = sorted(set(contact) | {0})
     for c in several:
         shown, here = colour or ("k" if c == 0 else f"C{c}"), contact == c
@@ -154,11 +154,11 @@ def points(data: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
     return np.broadcast_to(values[None, :, None], y.shape).ravel(), y.ravel()
 
 
-def contacts(data: Any, name: str) -> np.ndarray:
-    """The contact that each point of a panel is of; 0 where it is of none, and in files that do not tell."""
+def contacts(data: Any, name: str, n: int) -> np.ndarray:
+    """The contact of each of the n points of a panel; 0 where it is of none, and in files that do not tell."""
     kind = LISTED.get(name, "").split("_")[0]
     told = f"{kind}_contact" in data
-    return data[f"{kind}_contact"].values if told else np.zeros(len(points(data, name)[1]), dtype=int)
+    return data[f"{kind}_contact"].values if told else np.zeros(n, dtype=int)
 
 
 def thinned(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -16,16 +16,15 @@ from lcpstep.events.contacts.impact import forget_terms
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import count_impulses, measure_velocities, still
 from lcpstep.events.rows.jumps import drive_joints, go_beyond
-from lcpstep.kernels.clock import NUDGE
 from lcpstep.kernels.status import DONE, NOT_FINITE
-from lcpstep.pointers import abs, max
+from lcpstep.pointers import abs
 
 
 def turn_corner(s: Rubbing) -> int:
     """Beyond a corner contacts strike, those as well that land on it to rounding, and modes are sought; a status."""
     if s.n_c > 0 and not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
-    moment = 2.0 * NUDGE * max(abs(s.clock.t0), s.clock.scale)
+    moment = s.clock.moment(s.clock.t0)
     for c in range(s.n_c):
         u = s.velocity[s.n_j + c]
         falls = s.mode[c] == OPEN and s.hops[c] == 0 and u < 0.0  # low hops go on

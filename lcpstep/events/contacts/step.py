@@ -197,8 +197,13 @@ def differ(s: Rubbing) -> bool:
     """Whether the modes just decided are others than those at hand."""
     some = False
     for c in range(s.n_c):
-        some = some or s.new_mode[c] != s.mode[c] or s.new_direction[c] != s.direction[c]
+        some = some or is_other(s, c)
     return some
+
+
+def is_other(s: Rubbing, c: int) -> bool:
+    """Whether the mode just decided of contact c is another than that at hand."""
+    return s.new_mode[c] != s.mode[c] or s.new_direction[c] != s.direction[c]
 
 
 def look_ahead(s: Rubbing, h: float) -> int:
@@ -224,8 +229,7 @@ def tells(s: Rubbing) -> bool:
     """Whether the same are others of which more is known than that a contact is at the edge of its cone."""
     some = False
     for c in range(s.n_c):
-        other = s.new_mode[c] != s.mode[c] or s.new_direction[c] != s.direction[c]
-        some = some or (other and not wavers(s, c))
+        some = some or (is_other(s, c) and not wavers(s, c))
     return some
 
 

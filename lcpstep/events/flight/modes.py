@@ -15,7 +15,6 @@ from lcpstep.events.flight.contact import CLOSED, FREE, NONE, ON_THE_SURFACE, UN
 from lcpstep.events.flight.keep import keep_event
 from lcpstep.events.flight.motion import Flight, free, leave_from, on_obstacle
 from lcpstep.events.flight.rest import alpha_at
-from lcpstep.kernels.clock import NUDGE
 from lcpstep.pointers import abs, max, min
 
 JUMP = 1e-9  # of the velocities at hand: an obstacle's velocity that jumps by less does so by rounding
@@ -152,7 +151,7 @@ def turn_corner(s: Flight) -> None:
         return
     u = s.u
     # An impact within rounding of the corner belongs to it
-    strikes = s.contact and u < 0.0 and s.g <= -2.0 * u * NUDGE * max(abs(t), s.scale)
+    strikes = s.contact and u < 0.0 and s.g <= -u * s.moment(t)
     if s.on_surface and s.t0 == t:
         jump = pass_corner(s, t)
         if strikes and jump != 0.0:
