@@ -21,8 +21,17 @@ for method, n, tangents, aims in (
     found = periods(scene, method, x, n, drop=n - 2, tangents=tangents, targets=aims, strict=False)
     parts = [np.ascontiguousarray(getattr(found, field.name)).tobytes() for field in fields(found)]
     print(int(found.impacts.sum()), sha256(b"".join(parts)).hexdigest())
+from lcpstep.analysis.variation import monodromy
+block = scenes.coulomb_oscillator()
+D = monodromy(block, EventDriven(), np.concatenate([block.q0, block.v0]), (0.0, 3.0))
+print(D.tolist())
 """
-WAYS = ["event-driven, with derivatives", "event-driven, to a target", "in lockstep"]
+WAYS = [
+    "event-driven, with derivatives",
+    "event-driven, to a target",
+    "in lockstep",
+    "with friction, along its events",
+]
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""The equations of a motion with contacts at one state, called from Python: field, derivative, rows, guards, forces.
+"""The equations of a motion with contacts at one state, called from Python: field, rows, guards, forces.
 
 The same functions as those of the loop, so that what walks along a finished run (derivatives, balances) sees the same
 mechanics; modes are those that `hold` is given, or that a run has found.
@@ -12,7 +12,7 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles
-from lcpstep.events.codes import OPEN, RELATIVE_STEP, SLIDES
+from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.equations import measure, measure_rows
 from lcpstep.events.contacts.guards import look
 from lcpstep.events.contacts.held import right_hand_side
@@ -69,25 +69,6 @@ def field(s: Rubbing, t: float, x: Any) -> Any:
     dy = np.zeros(2 * s.n_q)
     right_hand_side(s, t, doubles(x), doubles(dy))
     return dy
-
-
-@cython.ccall
-def slopes(s: Rubbing, t: float, x: Any, scale: Any) -> Any:
-    """Derivative of `field` by x, (2 n_q, 2 n_q), by differences of fourth order over shares of `scale` (2 n_q,)."""
-    n = 2 * s.n_q
-    A, beside, rates = np.zeros((n, n)), np.array(x), np.zeros(n)
-    slope, y, dy, length = doubles(A), doubles(beside), doubles(rates), doubles(scale)
-    for j in range(n):
-        here, d = y[j], RELATIVE_STEP * length[j]
-        for k in range(4):
-            place = k - 2 if k < 2 else k - 1  # -2, -1, 1, 2
-            weight = (8.0 if abs(place) == 1 else -1.0) * (1.0 if place > 0 else -1.0) / (12.0 * d)
-            y[j] = here + place * d
-            right_hand_side(s, t, y, dy)
-            for i in range(n):
-                slope[i * n + j] += weight * dy[i]
-        y[j] = here
-    return A
 
 
 @cython.ccall

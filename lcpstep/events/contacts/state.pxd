@@ -17,7 +17,8 @@ cdef class Rubbing(RungeKutta):
     cdef readonly double scan_length
     cdef Py_ssize_t guard, paced, loose, stalled
     cdef double found, slope, kept_to, shown, delay
-    cdef bint constant, plain, risen
+    cdef readonly bint constant
+    cdef bint plain, risen
     cdef Doubles nodes, weights, q, v, a_free, a, force, dy, seen, dv, R, MR, W
     cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, instant, paces
     cdef Doubles shifted_rate, counted, total, loads, doubt, effect, effects

@@ -98,10 +98,11 @@ class Blow:
         R_x, R_t = np.eye(2 * n), np.zeros(2 * n)
         K, C, (share, _) = self.matrices(self.t, self.x)
         R_x[n:, n:] -= C @ np.linalg.pinv(K @ C) @ (share[:, None] * K)
-        m = 2 * n if callable(self.friction.mu) else n  # linear in v where mu does not depend on it
-        R_x[n:, :m] = derivative(
-            lambda x: self.law(self.t, np.append(x, self.x[m:])), self.x[:m], STEP, self.sizes[:m]
-        )
+        if not self.s.constant:
+            m = 2 * n if callable(self.friction.mu) else n  # linear in v where mu does not depend on it
+            R_x[n:, :m] = derivative(
+                lambda x: self.law(self.t, np.append(x, self.x[m:])), self.x[:m], STEP, self.sizes[:m]
+            )
         d = STEP * max(self.lasted, 1e-3 * self.latest)
         before, earlier, later, after = (self.law(self.t + k * d, self.x) for k in (-2.0, -1.0, 1.0, 2.0))
         R_t[n:] = (8.0 * (later - earlier) - after + before) / (12.0 * d)

@@ -43,7 +43,8 @@ def lost(s: Any, t: float, x: Array, mode: Any, direction: Array, size: Array) -
     D[:n, :n] -= C[on].T @ np.linalg.pinv(R[on] @ C[on].T) @ R[on]
     back = C[held].T @ np.linalg.pinv(R[held] @ C[held].T)
     D[n:, n:] -= back @ R[held]
-    D[n:, :n] -= back @ turning(s, t, x, held, size) @ D[:n, :n]
+    if not s.constant:
+        D[n:, :n] -= back @ turning(s, t, x, held, size) @ D[:n, :n]
     return D
 
 

@@ -31,11 +31,11 @@ from lcpstep.lengths import ASIDE, derivative, lengths, sizes
 from lcpstep.maps.saltation.blow import Blow
 from lcpstep.maps.saltation.finished import closed_at_once, with_friction
 from lcpstep.maps.saltation.lost import lost
+from lcpstep.maps.saltation.variations import Variations
 from lcpstep.refusals import refused
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
-TOLERANCE = 1e-12  # of the variational flow
 CONTINUOUS = 1e-9  # difference of fields that is none, relative to their size
 STEP = 1e-4  # of differences of guards, relative
 SAME = 1e-12  # times that are one, relative
@@ -63,6 +63,7 @@ class Walk:
         self.run, self.scene, self.n = run, with_friction(run.scene), run.scene.n_q
         self.s = start(self.scene, Smooth, run.method.rtol, run.method.atol)
         self.scale, self.sizes = max(float(np.max(np.abs(run.t))), 1e-300), sizes(run)
+        self.flow = Variations(self.s, np.minimum(self.sizes, 1.0))
         self.log = closed_at_once(run)
 
     def factors(self) -> list[Array]:
@@ -150,43 +151,22 @@ class Walk:
 
     def piece(self, t: float, x: Array, mode: Any, direction: Array) -> Piece:
         """The smooth motion to the next event, with its derivative."""
-        from scipy.integrate import solve_ivp
-
         later = [time for time in self.times() if time > t + SAME * self.scale]
-        end, n = later[0] if later else float(self.run.t[-1]), 2 * self.n
+        end, aside = later[0] if later else float(self.run.t[-1]), x + ASIDE * self.sizes
         if not point.hold(self.s, t, x, mode, direction):
             raise LcpStepError(f"no forces hold the closed contacts at t = {t:g} s")
-        y, errors = np.append(x, np.eye(n)), np.append(np.minimum(self.sizes, 1.0), np.ones(n * n))
-        aside = x + ASIDE * self.sizes
-        scale = lengths(lambda y: point.field(self.s, t, y), aside, RELATIVE_STEP, self.sizes)
-
-        def rates(time: float, y: Array) -> Array:
-            x = np.ascontiguousarray(y[:n])
-            A = point.slopes(self.s, time, self.beside(time, x, mode, direction), scale)
-            return np.concatenate([point.field(self.s, time, x), (A @ y[n:].reshape(n, n)).ravel()])
-
+        smooth = self.sizes
+        if not self.flow.steady:
+            smooth = lengths(lambda y: point.field(self.s, t, y), aside, RELATIVE_STEP, self.sizes)
+        self.flow.start(t, x, smooth)
+        x_end, J = self.flow.reached()
         for a, b in self.between_corners(t, end):
-            point.hold(self.s, a, np.ascontiguousarray(y[:n]), mode, direction)
-            done = solve_ivp(rates, (a, b), y, method="DOP853", rtol=TOLERANCE, atol=TOLERANCE * errors)
-            if not done.success:
-                raise LcpStepError(f"the variational flow could not be integrated: {done.message}")
-            y = done.y[:, -1]
-        return Piece(t, x, end, y[:n].copy(), mode, direction, y[n:].reshape(n, n).copy())
-
-    def beside(self, t: float, x: Array, mode: Any, direction: Array) -> Array:
-        """The state, or one beside it where contacts slide fast enough for differences: coefficients bend at rest."""
-        friction: Any = self.scene.contacts and self.scene.contacts.friction
-        if friction is None or not callable(friction.mu):
-            return x
-        R, _, rate, _ = point.rows(self.s, t, x)
-        x = x.copy()
-        for c in np.flatnonzero(np.asarray(mode) == SLIDES):
-            T = R[self.s.n_j + self.s.n_c + c]
-            fast = 3.0 * RELATIVE_STEP * max(1.0, float(np.max(np.abs(x)))) * float(np.sum(np.abs(T)))
-            missing = fast - direction[c] * (T @ x[self.n :] + rate[self.s.n_j + self.s.n_c + c])
-            if missing > 0.0:
-                x[self.n :] += direction[c] * missing * T / (T @ T)
-        return np.asarray(x)
+            point.hold(self.s, a, x_end, mode, direction)
+            code = self.flow.follow(a, b)
+            if code != Status.DONE:
+                raise LcpStepError(f"the variational flow could not be integrated: {Status(code).name}")
+            x_end, J = self.flow.reached()
+        return Piece(t, x, end, x_end, mode, direction, J)
 
     def between_corners(self, t: float, end: float) -> list[tuple[float, float]]:
         """The span cut at the corners of the scene."""
@@ -265,6 +245,10 @@ class Walk:
         t, x = float(events.time[0]), before.x_end
         c, column = self.trigger(before, events)
         point.hold(self.s, before.t, before.x, before.mode, before.direction)
+        if column == 0 and before.mode[c] == OPEN:
+            R, _, rate, _ = point.rows(self.s, t, x)
+            G, rate = R[self.s.n_j + c], rate[self.s.n_j + c]
+            return np.append(G, np.zeros(self.n)), float(G @ x[self.n :] + rate)
 
         def value(time: float, y: Array) -> float:
             return float(point.guards(self.s, time, np.ascontiguousarray(y))[c, column])
