@@ -55,14 +55,15 @@ def growth_of(scene: Scene, found: Reference, result: Study) -> Growth | None:
 
 
 def allow_for_growth(found: Reference, grown: Growth | None, result: Study) -> None:
-    """Rounding grows as a disturbance does."""
+    """Rounding grows as a disturbance does; a blow that is of the disturbance alone tells nothing of the others."""
     if grown is None or not isinstance(found.motion, Trajectory):
         return
     share = ROUNDING * grown.size / grown.disturbance
     apart = Difference(found.motion, grown.disturbed, t_end=min(grown.horizon, result.compared_until))
     for measure, value in result.uncertainty.items():
-        if measure != "unmatched":
-            result.uncertainty[measure] = max(value, share * float(getattr(apart, measure)))
+        grows = math.nan if measure == "unmatched" else float(getattr(apart, measure))
+        if math.isfinite(grows):
+            result.uncertainty[measure] = max(value, share * grows)
 
 
 def separation(

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import LinearContacts, LinearSystem, Scene, System, scenes
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, simulate, study
 from lcpstep.accuracy.horizon import growth
 from lcpstep.accuracy.orders import cost_of, fitted_order
@@ -137,6 +137,15 @@ def test_a_poor_reference_is_said_to_be_one():
 
 
 @pytest.mark.slow
+def test_a_blow_of_the_disturbed_start_alone_says_nothing_of_what_the_reference_knows():
+    floor = LinearContacts(G=[[0.0, 1.0]], friction=Coulomb(mu=0.01, tangent=[[1.0, 0.0]]))
+    system = LinearSystem(M=np.eye(2), K=np.diag([1.0, 0.0]), force=Harmonic(constant=[0.0, -10.0]))
+    scene = Scene(system, [1.05, 0.0], [0.0, 0.0], (0.0, 8.0), floor)  # at rest on the floor, where none strikes
+    known = study(scene, [Located(order=4)], h=[1e-2, 5e-3]).uncertainty
+    assert known["impact_time"] == known["impact_impulse"] == 0.0
+    assert 0.0 < known["sup_position"] < 1e-9
+
+
 def test_chaos_ends_the_comparison_where_it_separates_trajectories():
     scene = scenes.cam_follower(rpm=660.0, t_end=10.0)
     found = study(scene, Moreau(), h=[2e-4, 5e-5], horizon=5.0, **SHORT)
