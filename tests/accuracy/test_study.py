@@ -140,7 +140,9 @@ def test_a_poor_reference_is_said_to_be_one():
 def test_a_blow_of_the_disturbed_start_alone_says_nothing_of_what_the_reference_knows():
     floor = LinearContacts(G=[[0.0, 1.0]], friction=Coulomb(mu=0.01, tangent=[[1.0, 0.0]]))
     system = LinearSystem(M=np.eye(2), K=np.diag([1.0, 0.0]), force=Harmonic(constant=[0.0, -10.0]))
-    scene = Scene(system, [1.05, 0.0], [0.0, 0.0], (0.0, 8.0), floor)  # at rest on the floor, where none strikes
+    scene = Scene(
+        system, [1.05, 0.0], [0.0, 0.0], (0.0, 8.0), floor
+    )  # at rest on the floor, where none strikes
     known = study(scene, [Located(order=4)], h=[1e-2, 5e-3]).uncertainty
     assert known["impact_time"] == known["impact_impulse"] == 0.0
     assert 0.0 < known["sup_position"] < 1e-9

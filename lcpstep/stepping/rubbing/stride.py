@@ -5,13 +5,14 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN
+from lcpstep.events.contacts.arrival import arrive, find_standing, of_force, tells
 from lcpstep.events.contacts.equations import measure, measure_gaps
 from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.loose import first_stray
 from lcpstep.events.contacts.modes import decide, undecided
 from lcpstep.events.contacts.moments import of_sliding
 from lcpstep.events.contacts.state import GUARDS
-from lcpstep.events.contacts.step import arrive, find_standing, mark_resting, of_force, tells
+from lcpstep.events.contacts.step import mark_resting
 from lcpstep.events.contacts.surfaces import FREE
 from lcpstep.events.rows.contacts import add_impulse, hold_modes, list_by_row, still
 from lcpstep.events.rows.equations import respond_to
