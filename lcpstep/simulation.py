@@ -87,9 +87,9 @@ def simulate(
     -------
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
         end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large, where an
-        obstacle leaves no room to it, where steps are too long for the forces that it meets, lose energy, turn by
-        more than a radian what holds the motion, see no period of its oscillations or of its hops, or make it faster
-        than forces and obstacles could
+        obstacle leaves no room to it, or its gap has no gradient where it is met, where steps are too long for the
+        forces that it meets, lose energy, turn by more than a radian what holds the motion, see no period of its
+        oscillations or of its hops, or make it faster than forces and obstacles could
 
     Raises
     ------
@@ -158,7 +158,12 @@ def _looked_over(run: Trajectory) -> Trajectory:
         _compare_derivatives(run)
         _warn_of_fast_gaps(run)
         doubt = (
-            _no_room(run) or too_deep(run) or unresolved(run) or turned(run) or outrun(run) or too_short(run)
+            _of_obstacles(run)
+            or too_deep(run)
+            or unresolved(run)
+            or turned(run)
+            or outrun(run)
+            or too_short(run)
         )
     except KeyboardInterrupt:
         unseen = replace(run, message=f"{run.message}; interrupted before its states were looked over")
@@ -212,13 +217,14 @@ def _compare_derivatives(run: Trajectory) -> None:
     COMPARED.add(run.scene)
 
 
-def _no_room(run: Trajectory) -> str:
-    """Which obstacle has left no room, in words; only a curved gap asks for the model that tells."""
+def _of_obstacles(run: Trajectory) -> str:
+    """Which obstacle has left no room, or has no normal, in words; a flat one always has both."""
     if not isinstance(run.scene.contacts, Contacts):
         return ""
+    from lcpstep.normals import no_normal
     from lcpstep.room import no_room
 
-    return no_room(run)
+    return no_room(run) or no_normal(run)
 
 
 def _warn_of_fast_gaps(run: Trajectory) -> None:

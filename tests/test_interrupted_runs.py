@@ -72,7 +72,7 @@ def test_an_interrupt_while_a_trajectory_is_put_together_loses_nothing(method, m
 
 
 @pytest.mark.parametrize(
-    "look", ["_compare_derivatives", "_warn_of_fast_gaps", "_no_room", "too_deep", "unresolved"]
+    "look", ["_compare_derivatives", "_warn_of_fast_gaps", "_of_obstacles", "too_deep", "unresolved"]
 )
 def test_an_interrupt_while_a_finished_run_is_looked_over_loses_nothing(look, monkeypatch):
     scene = scenes.double_pendulum(t_end=0.1)

@@ -153,3 +153,41 @@ def test_rounding_of_the_place_of_a_body_at_rest_is_no_lack_of_room(method):
     scene = Scene(LinearSystem(M=1.0), 0.1 * 3, 0.0, (0.0, 1.0), Contacts(2, between, walls), p=[0.3])
     run = simulate(scene, method)
     assert (run.status, run.doubt) == (Status.DONE, "")
+
+
+def powers(m):
+    """Gap d^m of a wall at q = -1/2."""
+
+    def gap(t, q, v, p, out):
+        out[0] = (q[0] + 0.5) ** m
+
+    def jacobian(t, q, v, p, out):
+        out[0, 0] = m * (q[0] + 0.5) ** (m - 1)
+
+    return Contacts(1, gap, jacobian, restitution=0.7)
+
+
+@pytest.mark.parametrize("keep", [1, "impacts"], ids=str)
+@pytest.mark.parametrize(
+    "method", [Located(1e-2), Located(1e-2, order=4), Located(1e-2, tolerance=1e-6), EventDriven()], ids=repr
+)
+def test_a_gap_that_has_no_gradient_on_its_obstacle_is_told(method, keep):
+    """The cube of a distance: one method is right by luck, another off by 0.4 m of 1.5 m, both were DONE."""
+    for m, said in ((1, False), (3, True)):
+        run = simulate(Scene(LinearSystem(M=1.0, K=4.0), 1.0, 0.0, (0.0, 3.0), powers(m)), method, keep=keep)
+        assert run.status is Status.DONE
+        assert ("no gradient where it is met" in run.doubt) is said
+
+
+def test_a_gradient_that_grows_fast_but_is_there_is_not_told():
+    def gap(t, q, v, p, out):
+        out[0] = math.expm1(100.0 * (q[0] + 0.5))
+
+    def jacobian(t, q, v, p, out):
+        out[0, 0] = 100.0 * math.exp(100.0 * (q[0] + 0.5))
+
+    run = simulate(
+        Scene(LinearSystem(M=1.0, K=4.0), 1.0, 0.0, (0.0, 3.0), Contacts(1, gap, jacobian)), Located(1e-3)
+    )
+    assert len(run.impacts) > 0
+    assert "no gradient" not in run.doubt

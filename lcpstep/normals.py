@@ -1,0 +1,55 @@
+"""Whether the obstacles that a finished run has met have a normal there: a gradient G of the gap that is not zero.
+
+    g = d^m, m > 1, for the distance d:      |G| = m d^(m - 1), zero on the obstacle
+
+Such a gap is met nowhere with a speed u = G v, so that no law of impact answers, and no method knows how deep a step
+is inside, g / |G|. At events of each contact the gradient is compared with that a little further along it, as far as
+states were kept near them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+from lcpstep import depth
+from lcpstep.trajectory import Kind, Status, Trajectory
+
+Array = NDArray[np.float64]
+LOOKS = 64  # states that tell how far the motion goes
+NEAR = 1e-2  # of the way that the coordinates go: where the gradient is looked at again
+VANISHES = 1e-2  # of that gradient
+MET = (Kind.IMPACT, Kind.ACCUMULATION, Kind.STICK)
+
+
+def no_normal(run: Trajectory) -> str:
+    """Which contact has struck where its gap has no gradient, in words; "" where none that was looked at."""
+    if run.status != Status.DONE or len(run.t) < 2:
+        return ""
+    log = run.impacts[np.isin(run.impacts.kind, MET)]
+    log = log[(log.time >= run.t[0]) & (log.time <= run.t[-1])]
+    aside = NEAR * float(np.linalg.norm(np.ptp([run.scene.q0, *run.q[:: len(run.q) // LOOKS + 1]], axis=0)))
+    for c in np.unique(log.contact):
+        times = log.time[log.contact == c]
+        for k in {int(np.searchsorted(run.t, t, side="right")) - 1 for t in (times[0], times[-1])}:
+            try:
+                vanishes = aside > 0.0 and _vanishes(run.scene, int(c), run.t[k], run.q[k], run.v[k], aside)
+            except ValueError:  # a callback that fails beside the motion
+                continue
+            if vanishes:
+                return (
+                    f"the gap of contact {c} has no gradient where it is met, at t = {run.t[k]:.9g} s, and no law of "
+                    f"impact is known there: give a gap that grows in proportion to the distance"
+                )
+    return ""
+
+
+def _vanishes(scene: Scene, c: int, t: float, q: Array, v: Array, aside: float) -> bool:
+    """Whether the gradient of a gap at q is far smaller than at a distance along it."""
+    G = depth.normal(scene, c, (t, q, v))
+    here = float(np.linalg.norm(G))
+    if here == 0.0:
+        return True
+    there = float(np.linalg.norm(depth.normal(scene, c, (t, q + aside / here * G, v))))
+    return here < VANISHES * there
