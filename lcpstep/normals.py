@@ -29,7 +29,8 @@ def no_normal(run: Trajectory) -> str:
         return ""
     log = run.impacts[np.isin(run.impacts.kind, MET)]
     log = log[(log.time >= run.t[0]) & (log.time <= run.t[-1])]
-    aside = NEAR * float(np.linalg.norm(np.ptp([run.scene.q0, *run.q[:: len(run.q) // LOOKS + 1]], axis=0)))
+    seen = np.array([run.scene.q0, *run.q[:: len(run.q) // LOOKS + 1]])
+    aside = NEAR * float(np.linalg.norm(np.ptp(seen, axis=0)))
     for c in np.unique(log.contact):
         times = log.time[log.contact == c]
         for k in {int(np.searchsorted(run.t, t, side="right")) - 1 for t in (times[0], times[-1])}:
