@@ -5,8 +5,8 @@ from itertools import combinations, permutations
 import numpy as np
 import pytest
 
-from lagrangian import LinearContacts, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Kind, Located, simulate
+from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, scenes
+from lcpstep import EventDriven, Kind, Located, Status, simulate
 
 ROWS = np.array([[1.0, 0.3], [-0.4, 1.0]])
 # A plane that depends on both, and the second once more; each with a restitution of its own
@@ -103,3 +103,31 @@ def test_planes_that_close_within_the_tolerance_strike_one_after_the_other(first
             x = np.linalg.solve(M, G[c])
             v = v - x * (1.0 + r[c]) * (G[c] @ v) / (G[c] @ x)
     np.testing.assert_allclose(run.at(0.37 + 1e-5)[1], v, rtol=0, atol=1e-6)
+
+
+def neighbours(t, q, v, p, out):
+    for c in range(out.shape[0]):
+        out[c] = q[c + 1] - q[c]
+
+
+def their_slopes(t, q, v, p, out):
+    out[:] = 0.0
+    for c in range(out.shape[0]):
+        out[c, c], out[c, c + 1] = -1.0, 1.0
+
+
+@pytest.mark.parametrize("method", [Located(1e-2), Located(1e-2, order=4), EventDriven()], ids=repr)
+@pytest.mark.parametrize("seed", range(6))
+def test_elastic_bodies_of_one_mass_that_meet_at_one_point_exchange_their_speeds(seed, method):
+    """By gaps in the user's words, too: they leave as if they had passed through each other."""
+    g = np.random.default_rng(seed)
+    n = int(g.integers(3, 6))
+    v = np.sort(np.round(g.uniform(-3.0, 3.0, n), 1) + 0.01 * np.arange(n))[
+        ::-1
+    ]  # the fastest comes from behind
+    contacts = Contacts(n - 1, neighbours, their_slopes, restitution=1.0)
+    scene = Scene(LinearSystem(2.5 * np.eye(n)), -0.5 * v, v, (0.0, 1.0), contacts)
+    m = simulate(scene, method)
+    assert m.status is Status.DONE
+    np.testing.assert_allclose(m.v[-1], np.sort(v), rtol=0.0, atol=1e-12)
+    assert np.unique(np.round(m.impacts.time, 9)).tolist() == [0.5]

@@ -17,6 +17,7 @@ from lcpstep.events.contacts.parting import approaches, let_go, pass_by, rejoin
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import measure_velocities, sliding, still, stop_rows
 from lcpstep.events.rows.cycle import ROUNDS, fades, look_back, recurs, sum_up
+from lcpstep.events.rows.exchange import leave_for_later, some_exchange
 from lcpstep.events.rows.held import hold_joints
 from lcpstep.events.rows.problem import fill, list_unknowns, row_of
 from lcpstep.kernels.coulomb import solve_contacts
@@ -125,12 +126,27 @@ def strike_together(s: Rubbing, t: float, plastic: bool) -> bool:
 
 def gather(s: Rubbing, plastic: bool) -> tuple[int, int]:
     """The contacts that take part in an impact, which are closed from now on, and their problem; see `pose`."""
+    n = 0
     for c in range(s.n_c):
         u, least = s.before[c], s.terms[c]
         struck = u <= least if s.parting[c] == 0 else u < -least
-        if s.mode[c] == OPEN and s.touches[c] == 1 and (plastic or s.in_turn or struck):
-            s.mode[c] = SLIDES
+        if s.mode[c] != OPEN or (s.touches[c] == 1 and (plastic or s.in_turn or struck)):
+            s.problem.ids[n] = c
+            n += 1
+    if not plastic and follow_each_other(s, n):
+        n = leave_for_later(s.rows, n, s.length == 0.0)
+    for a in range(n):
+        if s.mode[s.problem.ids[a]] == OPEN:
+            s.mode[s.problem.ids[a]] = SLIDES
     return pose(s)
+
+
+def follow_each_other(s: Rubbing, n: int) -> bool:
+    """Whether two of n contacts, without friction or joints beside, strike one after another."""
+    for c in range(s.n_c):
+        if s.jumped[c] != 0.0:
+            return False
+    return s.n_t == 0 and s.n_j == 0 and some_exchange(s.rows, n, s.length == 0.0)
 
 
 def pose(s: Rubbing) -> tuple[int, int]:

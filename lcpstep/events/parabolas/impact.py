@@ -17,12 +17,10 @@ from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.parabolas.forces import joints_own, solve_members
 from lcpstep.events.parabolas.state import Mechanism
 from lcpstep.events.rows.chatter import CHECKED
+from lcpstep.events.rows.exchange import leave_for_later, some_exchange
 from lcpstep.events.rows.held import add_column, constrain, hold, hold_joints
-from lcpstep.kernels.together import order_matters
 from lcpstep.kernels.vectors import clear, copy, largest, product
-from lcpstep.pointers import abs, inf, min
-
-LATER, UNTOLD, HERE, NEXT = -1, 0, 1, 2  # whether a member strikes now
+from lcpstep.pointers import abs, min
 
 
 def strike(s: Mechanism) -> bool:
@@ -58,77 +56,11 @@ def gather(s: Mechanism) -> None:
         if takes_part and not (u >= -s.noise(c) and joints_own(s, c)):
             s.problem.ids[s.n_members], s.lift[s.n_members] = c, s.noise(c)
             s.n_members += 1
-    if some_exchange(s):
-        leave_for_later(s)
-
-
-def some_exchange(s: Mechanism) -> bool:
-    """Whether there are two among the members that do."""
-    for a in range(1, s.n_members):
-        for b in range(a):
-            if exchange(s, s.problem.ids[a], s.problem.ids[b]):
-                return True
-    return False
-
-
-def exchange(s: Mechanism, c: int, d: int) -> bool:
-    """Whether the impacts of two contacts follow each other, since their order makes no difference.
-
-    As where rounding leaves their gaps a little open (`modes.has_come`): whether it does must not decide. Those that
-    touch since the start are pushed together.
-    """
-    i, k = s.n_j + c, s.n_j + d
-    if s.D[i * s.n_r + k] == 0.0 or not (strikes(s, c) and strikes(s, d)):
-        return False
-    if s.length == 0.0 and s.struck[c] == -inf and s.struck[d] == -inf:
-        return False
-    r, W_c, W_d = s.model.restitution, s.D[i * s.n_r + i], s.D[k * s.n_r + k]
-    return not order_matters(W_c, W_d, s.D[i * s.n_r + k], r[c], r[d], s.velocity[i], s.velocity[k])
-
-
-def strikes(s: Mechanism, c: int) -> bool:
-    """Whether contact c is open and approaches."""
-    return s.mode[c] == OPEN and s.velocity[s.n_j + c] < -s.noise(c)
-
-
-def leave_for_later(s: Mechanism) -> None:
-    """Take away the members that but exchange speeds with some that strike faster: the next impact is theirs.
-
-    With each goes what it is struck together with.
-    """
-    ids, taken = s.problem.ids, s.tried
-    for c in range(s.n_c):
-        taken[c] = UNTOLD
-    while True:
-        fastest = -1
+    touched = s.length == 0.0
+    if some_exchange(s, s.n_members, touched):
+        s.n_members = leave_for_later(s, s.n_members, touched)
         for a in range(s.n_members):
-            c = ids[a]
-            faster = fastest < 0 or s.velocity[s.n_j + c] < s.velocity[s.n_j + fastest]
-            if taken[c] == UNTOLD and strikes(s, c) and faster:
-                fastest = c
-        if fastest < 0:
-            break
-        taken[fastest] = NEXT
-        waits = False
-        more = True
-        while more:
-            more = False
-            for a in range(s.n_members):
-                for b in range(s.n_members):
-                    c, d = ids[a], ids[b]
-                    linked = taken[c] == NEXT and s.D[(s.n_j + c) * s.n_r + s.n_j + d] != 0.0
-                    if linked and taken[d] == UNTOLD and not exchange(s, c, d):
-                        taken[d], more = NEXT, True
-                    waits = waits or (linked and taken[d] == HERE)
-        for a in range(s.n_members):
-            if taken[ids[a]] == NEXT:
-                taken[ids[a]] = LATER if waits else HERE
-    n = 0
-    for a in range(s.n_members):
-        if taken[ids[a]] != LATER:
-            ids[n], s.lift[n] = ids[a], s.lift[a]
-            n += 1
-    s.n_members = n
+            s.lift[a] = s.noise(s.problem.ids[a])
 
 
 def solve_law(s: Mechanism, rebounds: bool) -> bool:
