@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
+from lcpstep.gaps import no_way_out
 from lcpstep.lcp.saddle import Point, Problem
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
@@ -35,6 +36,8 @@ if TYPE_CHECKING:
     from lcpstep.stepping.moreau import Moreau
 
 Array = NDArray[np.float64]
+DENSE = 1_000_000  # numbers in an array in which it is asked why a problem has no solution
+PASSED = 1e-3  # of the rates before a blow
 LEFT_OVER = 1e-4  # of the largest rate in a step: what its first blows have left has the digits of that
 LOOKS = 50  # steps between two reports of progress
 FEW = 100  # coordinates and contacts up to which dense steps are faster, being compiled, and know more
@@ -145,17 +148,28 @@ class SparseRun(StepRun):
         """Velocity at the end of the step, the impulses found and added up; and how that went."""
         e, v, u, p = self.equations, self.v, self.u, np.zeros(len(s_t))
         push, free = r, step.saddle.free(r)
-        blows = Blows(active, self.slow(step, free, active, s_t))
+        blows = Blows(active, self.slow(step, free, active, s_t), e.restitution)
         while blows.follows(u):
-            point = self.contact(step, push, free, blows, v, s_t, blows.rebound(u, e.restitution))
-            if not point.solved:
-                return self.v, Status.LCP_FAILED
-            v, p = v + point.x, p + np.maximum(point.z, 0.0)
+            rebound = blows.rebound(u, e.restitution)
+            point = self.contact(step, push, free, blows, v, s_t, rebound)
+            v, p, before = v + point.x, p + np.maximum(point.z, 0.0), u + rebound
             u, push = e.G_rows.times(v) - s_t, np.zeros(len(v))
+            if not point.solved or self.passes(blows.chosen, u + rebound, before, free):
+                return self.v, Status.LCP_FAILED
             free = push
         self.p, self.active = p, active
         self.impulse += p
         return step.at_rest(v, r, p), Status.DONE
+
+    def passes(self, chosen: Any, w: Array, before: Array, free: Array) -> bool:
+        """Whether a blow leaves contacts that go on approaching: walls between which no impulse helps.
+
+        w, before : (n_c,)   rates after and before it;  free : change of the velocity without contact
+        """
+        left = float(np.max(-w[chosen], initial=0.0))
+        if left <= PASSED * float(np.max(np.abs(before[chosen]), initial=0.0)):
+            return False
+        return left > PASSED * float(np.max(np.abs((before + self.equations.G_rows.times(free))[chosen])))
 
     def slow(self, step: Step, free: Array, active: Any, s_t: Array) -> float:
         """Speed beyond which contacts strike or separate, by `Blows`; -1 where they do not do both.
@@ -222,5 +236,12 @@ class SparseRun(StepRun):
     def why(self, code: int) -> str:
         """Why the run ended early, in words."""
         if code == Status.LCP_FAILED:
-            return f"no solution was found for the contacts {checks.shown(self.refused)} {self.where}"
+            words = f"no solution was found for the contacts {checks.shown(self.refused)}"
+            few = self.scene.n_q * len(self.refused) <= DENSE
+            closes = (
+                no_way_out(self.scene, self.now + self.plan.h, self.state[0], self.refused.tolist())
+                if few
+                else ""
+            )
+            return f"{closes or words} {self.where}"
         return super().why(code)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.stepping.steps import LEFT, RESOLUTION, ROUNDING, TURNS
+from lcpstep.stepping.steps import LEFT, RESOLUTION, RETURNED, ROUNDING, TURNS
 
 Array = NDArray[np.float64]
 
@@ -33,11 +33,14 @@ class Blows:
     ----------
     active : (n_c,) of bool   contacts that may bear
     slow : speed beyond which they strike, or separate; negative where all take part at once
+    restitution : (n_c,), where nothing but contacts takes part
     """
 
-    def __init__(self, active: Any, slow: float) -> None:
+    def __init__(self, active: Any, slow: float, restitution: Array | None = None) -> None:
         self.active, self.slow, self.several = active, slow, slow >= 0.0
         self.taken, self.fastest, self.last, self.chosen = 0, 0.0, False, active
+        self.alone, self.u_before = restitution is not None, np.full(len(active), np.inf)
+        self.elastic = restitution is not None and bool(np.all(restitution[active] == 1.0))
 
     def follows(self, u: Array) -> bool:
         """Whether there is another blow, at these gap velocities."""
@@ -47,10 +50,22 @@ class Blows:
         fastest = float(np.max(-u[self.active]))
         if self.last or fastest <= self.slow or self.taken > TURNS * np.count_nonzero(self.active):
             return False
+        back = self.returns(u)
+        if back and self.elastic:
+            return False
         self.fastest = max(self.fastest, fastest)
-        self.last = fastest <= LEFT * self.fastest
+        self.last = back or fastest <= LEFT * self.fastest
         self.chosen = self.active & (self.last | (u <= self.slow))
         return True
+
+    def returns(self, u: Array) -> bool:
+        """Whether the blows so far have come back to gap velocities of before."""
+        if not self.alone or self.taken == 1:
+            return False
+        near = np.abs(u - self.u_before) <= RETURNED * self.fastest
+        if (self.taken - 1) & (self.taken - 2) == 0:  # powers of two, as in `kernels.recurrence`
+            self.u_before = u.copy()
+        return bool(np.all(near[self.active]))
 
     def rebound(self, u: Array, restitution: Array) -> Array:
         """What is added to the rates: by restitution, and of those at rest, which no blow may close faster."""

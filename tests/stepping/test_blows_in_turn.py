@@ -5,7 +5,7 @@ import pytest
 from scipy import sparse
 
 from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, Moreau, energy, simulate
+from lcpstep import EventDriven, Moreau, Status, energy, simulate
 from lcpstep.lcp.saddle import Problem
 from lcpstep.stepping.sparse_equations import Equations, Step
 
@@ -119,3 +119,33 @@ def test_asking_a_sparse_step_whether_blows_follow_keeps_the_factors_of_its_cont
     again = step.saddle.solve(problem, first.z > 0.0, none)
     assert step.saddle.systems == factorised > 0
     np.testing.assert_array_equal(first.z, again.z)
+
+
+def rising(t, q, v, p, out):
+    out[:] = 0.0
+    out[0, 0], out[0, 1] = 3.0 * t, 3.0
+
+
+def between_table_and_ceiling(restitution, way=""):
+    """Three beads on a table that rises to the ceiling, from 0.7 m below it, in 0.2 s: they fill it after 0.2 s."""
+    G = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, -1.0, 1.0], [0.0, 0.0, -1.0]])
+    M = np.diag([1.0, 1.0, 0.5])
+    if way == "sparse":
+        M, G = sparse.csr_array(M), sparse.csr_array(G)
+    contacts = LinearContacts(G, [0.0, 0.0, 0.0, 0.6], restitution, motion=rising)
+    return Scene(LinearSystem(M, force=[0.0, -0.1, 0.2]), [0.1, 0.2, 0.3], np.zeros(3), (0.0, 0.5), contacts)
+
+
+@pytest.mark.usefixtures("sparse_steps")
+@pytest.mark.parametrize("restitution", [0.3, 0.8])
+@pytest.mark.parametrize(
+    ("way", "method"),
+    [("", Moreau(1e-3)), ("sparse", Moreau(1e-3)), ("", Moreau(1e-2, tolerance=1e-3))],
+    ids=str,
+)
+def test_a_table_that_leaves_no_room_below_the_ceiling_ends_the_run(way, method, restitution):
+    """Blows to and fro that the table feeds have no end; the beads were driven through the ceiling in silence."""
+    run = simulate(between_table_and_ceiling(restitution, way), method)
+    assert run.status is Status.LCP_FAILED
+    assert "approach each other with nothing left between" in run.message
+    assert run.t[-1] == pytest.approx(0.2, abs=2.5e-3)

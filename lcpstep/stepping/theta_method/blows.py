@@ -8,7 +8,9 @@ next, still in the step, by the same law from the velocities at hand:
 
     0 <= u+ + r u  complementary to  p >= 0   on the active contacts that do not separate,     u+ = u + W p
 
-until no active contact approaches any more. Blows that ever halve what is left end in a plastic one of all contacts.
+until no active contact approaches any more. Blows that ever halve what is left end in a plastic one of all contacts,
+and so do those that lose energy and go on with the speeds that they had before, as obstacles that close in feed them:
+where these leave no room there is none. Elastic ones that do so go on in the next step.
 No blow raises the energy, and none of them waits for a step of its own, in which bodies would move on.
 
 Source: the same sequence of problems as of impacts at one instant in `events.parabolas.modes`, `jump`.
@@ -19,9 +21,10 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.recurrence import looks_back
 from lcpstep.kernels.vectors import add, clear, copy, copy_indices, largest, product, size_of_product
-from lcpstep.pointers import after, max, min
-from lcpstep.stepping.steps import LEFT, RESOLUTION, TURNS
+from lcpstep.pointers import abs, after, max, min
+from lcpstep.stepping.steps import LEFT, RESOLUTION, RETURNED, TURNS
 from lcpstep.stepping.theta_method.codes import FINISHED, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Blows, Plan, Rows, State
 from lcpstep.stepping.theta_method.responses import prepare
@@ -43,7 +46,7 @@ def separates(plan: Plan, s: State, c: Rows, b: Blows, n_a: int) -> bool:
             return False
     copy_indices(b.ids, ids, n_a)
     clear(b.p, c.n)
-    b.n_a, b.taken, b.last, b.fastest = n_a, 0, False, 0.0
+    b.n_a, b.taken, b.last, b.ends, b.fastest = n_a, 0, False, False, 0.0
     return True
 
 
@@ -66,6 +69,7 @@ def one_after_another(m: Model, plan: Plan, s: State, c: Rows, b: Blows, t_next:
             return code
         add(b.p, 1.0, c.p, c.n)
         after_blow(plan, s, c, b)
+        look_back(m, c, b)
     all_of_them(s, c, b)
     pose(m, plan, s, c, s.active, t_next, True)
     copy(c.p, b.p, c.n)
@@ -82,7 +86,7 @@ def choose(s: State, c: Rows, b: Blows) -> bool:
     if b.last or fastest <= b.slow or b.taken >= TURNS * b.n_a:
         return False
     b.fastest = max(b.fastest, fastest)
-    b.last = fastest <= LEFT * b.fastest
+    b.last = b.ends or fastest <= LEFT * b.fastest
     for k in range(b.n_a):
         if b.last or b.u[b.ids[k]] <= b.slow:
             c.problem.ids[n] = b.ids[k]
@@ -90,6 +94,23 @@ def choose(s: State, c: Rows, b: Blows) -> bool:
     s.active = n
     take_part(c, n)
     return True
+
+
+def look_back(m: Model, c: Rows, b: Blows) -> None:
+    """Whether the blows have come back to the speeds of before; there is no other to follow, or a plastic one."""
+    if c.n_t + c.n_j > 0 or b.last:
+        return
+    back, elastic = b.taken > 1, True
+    for k in range(b.n_a):
+        i = b.ids[k]
+        back = back and abs(b.u[i] - b.u_before[i]) <= RETURNED * b.fastest
+        elastic = elastic and m.restitution[i] == 1.0
+    if back and elastic:
+        b.taken = TURNS * b.n_a
+    elif back:
+        b.ends = True
+    if looks_back(b.taken):
+        copy(b.u_before, b.u, c.n_c)
 
 
 def all_of_them(s: State, c: Rows, b: Blows) -> None:

@@ -23,11 +23,11 @@ cdef class State:
 
 cdef class Blows:
     cdef object kept
-    cdef bint several, last
+    cdef bint several, last, ends
     cdef double least, fastest, slow
     cdef Py_ssize_t taken, n_a
     cdef Indices ids
-    cdef Doubles v, u, sliding, own_v, own_u, own_sliding, p
+    cdef Doubles v, u, sliding, own_v, own_u, own_sliding, p, u_before
 
 cdef class Rows:
     cdef readonly object arrays

@@ -113,6 +113,7 @@ class Blows:
     least                   contacts no faster than this do not rebound
     several                 blows follow one another in the step at hand
     taken, last             how many have been struck; no other is to follow
+    ends, u_before : (n_c,) the next one is the last; gap velocities some blows ago
     fastest                 approach in any of them
     ids : (n_c,), n_a       all active contacts
     slow                    as fast the forces of the step could make any of them: faster ones strike, or separate
@@ -120,12 +121,13 @@ class Blows:
     """
 
     def __init__(self, n_q: int, n_c: int, n_t: int, n: int) -> None:
-        self.several, self.last, self.least = False, False, -1.0
+        self.several, self.last, self.ends, self.least = False, False, False, -1.0
         self.taken, self.n_a, self.fastest, self.slow = 0, 0, 0.0, 0.0
-        self.kept = np.zeros(n_q + n_c + n_t + n), np.zeros(n_c, dtype=np.intp)
+        self.kept = np.zeros(n_q + 2 * n_c + n_t + n), np.zeros(n_c, dtype=np.intp)
         self.ids, self.own_v = indices(self.kept[1]), doubles(self.kept[0])
         self.own_u, self.own_sliding = after(self.own_v, n_q), after(self.own_v, n_q + n_c)
         self.p = after(self.own_sliding, n_t)
+        self.u_before = after(self.p, n)
         self.v, self.u, self.sliding = self.own_v, self.own_u, self.own_sliding
 
     def begin(self, s: State, rows: Rows) -> None:
