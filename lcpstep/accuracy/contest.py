@@ -36,10 +36,9 @@ COARSER = (4.0, 16.0, 64.0)  # further steps, in those of a method
 FEWEST = 20  # of these in the span
 SPREAD = (0.87, 1.0, 1.15)  # nearby steps that these are averaged over: one alone scatters by a factor of ten
 LOOSER = (1e-4, 1e-6, 1e-8, 1e-10)  # further tolerances
-BRIEF, REPEATS = (
-    0.05,
-    3,
-)  # runs shorter than that [s of CPU time] are timed again, so often; the shortest counts
+# Runs shorter than that [s of CPU time] are timed again, so often, and the shortest counts: the first one on a
+# machine reads modules as well
+BRIEF, REPEATS = 0.2, 3
 FINER = 16.0  # steps of a reference by time-stepping
 
 
