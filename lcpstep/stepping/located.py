@@ -25,9 +25,10 @@ class Located:
     ----------
     h : step [s]; the last step is shortened where h does not divide the span
     order : 2, 4 or "exact", of the smooth motion and with it of the whole
-        4: Runge-Kutta, four to five force evaluations a step and after every impact. "exact": Taylor polynomials
-        up to rounding, for linear systems under constant and harmonic forces (`lagrangian.Harmonic`) with flat
-        contacts; a moving obstacle or frame with one coordinate only.
+        4: Runge-Kutta, five force evaluations a step and after every impact, thirteen while a contact rests; with
+        friction or joints four. "exact": Taylor polynomials up to rounding, for linear systems under constant and
+        harmonic forces (`lagrangian.Harmonic`) with flat contacts; a moving obstacle or frame with one coordinate
+        only.
     max_events : bound on the number of events of a run, rounds of its loop without one included; it ends with the
         status TOO_MANY_EVENTS there
     max_per_step : bound on the events within one step; beyond it one plastic impact of all contacts ends the step,
