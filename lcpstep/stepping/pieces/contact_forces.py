@@ -18,7 +18,7 @@ from lcpstep.pointers import Doubles, abs, after, max, min
 from lcpstep.stepping.pieces.chosen import solve_chosen
 from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
-from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, keep_closed
+from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, factor_pressed, keep_closed
 from lcpstep.stepping.pieces.smooth import answer_forces
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import count_turn, release, release_time, stick
@@ -60,7 +60,7 @@ def hold(m: Model, plan: Plan, w: Work, place: int, t: float) -> bool:
             alpha = leaving(m, plan, w, W, k, n_k, t)
             if alpha > 0.0:
                 if w.status[c] == CLOSED:
-                    at = release_time(w, c, t, rest, alpha / W[c * w.n_c + c])
+                    at = release_time(w, c, t, rest, alpha / mobility(w, W, c, n_k))
                     release(m, plan, w, c, at, 0.0)
                 w.grounded[c] = LEFT
                 continue
@@ -116,6 +116,21 @@ def leaving(m: Model, plan: Plan, w: Work, W: Doubles, k: int, n_k: int, t: floa
     if alpha <= ROUNDING * (size + abs(w.b[k])) or alpha <= ROUNDING * (size + acceleration_terms(m, w, c)):
         return 0.0
     return alpha if alpha > jerked(w, W, c) and tells(plan, w, c, alpha, t) else 0.0
+
+
+def mobility(w: Work, W: Doubles, c: int, n_k: int) -> float:
+    """How contact c, which bears nothing, answers a force while those of the chosen that bear one stay closed.
+
+    What it would have to pull with keeps all of them closed, not c alone: the others answer it.
+    """
+    n, own = factor_pressed(w, W, n_k, False), W[c * w.n_c + c]
+    for i in range(n):
+        w.change[i] = W[w.held[i] * w.n_c + c]
+    solve_factored(w.problem, n_k, n, w.change)
+    left = own
+    for i in range(n):
+        left -= W[c * w.n_c + w.held[i]] * w.change[i]
+    return left if left > ROUNDING * own else own
 
 
 def tells(plan: Plan, w: Work, c: int, alpha: float, t: float) -> bool:
@@ -230,7 +245,7 @@ def land(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
         if w.p[c] == 0.0 and tau > 0.0:
             u = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
             if u > ROUNDING * speed_terms(plan, w, c):
-                lost = 2.0 * u / (tau * W[c * w.n_c + c])
+                lost = 2.0 * u / (tau * mobility(w, W, c, n_k))
                 force = w.force_now[c]
                 share = force / (force + lost) if force > 0.0 else 0.0
                 release(m, plan, w, c, t + tau * share, u)
