@@ -26,6 +26,7 @@ from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.quadratic import first_zero
 from lcpstep.kernels.vectors import copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, max, min
+from lcpstep.stepping.rubbing.let_go import hops, is_motion, widen_until_decided
 from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 NOWHERE = -1.0  # in place of a time: the guard does not act, its polynomial was wrong
@@ -147,6 +148,7 @@ def first_event(s: Strides, h: float) -> int:
     """The first guard that acts within the step of size h, or -1; when, into `found`, as a fraction of h."""
     s.guard, s.found = -1, 2.0
     for g in range(GUARDS * s.n_c):
+        widen_until_decided(s, g, h)
         least, low = curve(s, g, h), low_flight(s, g)
         if low > h or (low == 0.0 and least > (0.0 if s.armed[g] == 1 else -s.band[g])):
             continue
@@ -185,14 +187,6 @@ def arm(s: Strides) -> None:
     for g in range(GUARDS * s.n_c):
         if s.end_value[g] > s.band[g] and s.carried[g // GUARDS] == 0:
             s.armed[g] = 1
-
-
-def is_motion(s: Strides, g: int) -> bool:
-    """Whether guard g is a gap or a sliding velocity, rather than one of forces."""
-    c = g // GUARDS
-    if g % GUARDS == 0:
-        return s.mode[c] == OPEN
-    return s.mode[c] == SLIDES and g % GUARDS == 1 and rubs(s.rows, c)
 
 
 def curve(s: Strides, g: int, h: float) -> float:
@@ -243,12 +237,6 @@ def low_flight(s: Strides, g: int) -> float:
         return 0.0
     tau = first_zero(s.height[c], s.begin_slope[g], half)
     return tau if is_low(s, c, tau) else 0.0
-
-
-def hops(s: Strides, c: int) -> bool:
-    """Whether a hop of contact c begins at the base, or a low one goes on there."""
-    g = GUARDS * c
-    return s.mode[c] == OPEN and s.armed[g] == 0 and (s.begin_slope[g] > s.terms[c] or s.carried[c] == 1)
 
 
 def is_low(s: Strides, c: int, tau: float) -> bool:

@@ -21,14 +21,8 @@ from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 from lcpstep.kernels.vectors import copy, distance, largest
 from lcpstep.pointers import abs, after, inf, max, min
-from lcpstep.stepping.rubbing.found import (
-    curve,
-    is_motion,
-    measure_base,
-    note_arrival,
-    note_middle,
-    read_guards,
-)
+from lcpstep.stepping.rubbing.found import curve, measure_base, note_arrival, note_middle, read_guards
+from lcpstep.stepping.rubbing.let_go import is_motion
 from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 ROUNDING = 8 * RESOLUTION  # relative differences that are no errors

@@ -165,6 +165,7 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
         if code != DONE or ahead >= h or (changes and not waits):
             break
         ahead *= FURTHER
+    s.decided = t0 + tau + ahead
     return code
 
 

@@ -1,7 +1,7 @@
 cdef class Strides(Smooth):
     cdef object ends
     cdef Py_ssize_t order, n_steps
-    cdef double h, t_start, tolerance, span, size_q, size_v, tau
+    cdef double h, t_start, tolerance, span, size_q, size_v, tau, decided
     cdef bint going, based
     cdef readonly Py_ssize_t astray
     cdef Doubles leaving, arriving, middle, push, begin_value, begin_slope, end_value, end_slope, middle_value

@@ -39,6 +39,7 @@ class Strides(Smooth):
     tolerance, span      0 for steps of one size; of time
     size_q, size_v       of the motion so far, where there is a tolerance
     tau                  from the base to the event of `guard`
+    decided              up to when the modes have been looked at that followed when a force left its cone
     astray               of the rows held that no position is found on at the end of the last step the worst, or -1
     going                whether rates, forces, guards and their slopes at the base state are known
     leaving, arriving, middle : (n_r,)    forces of the rows at both ends of the step last made, and (order 4) between
@@ -61,7 +62,7 @@ class Strides(Smooth):
     def __init__(self, *given: Any) -> None:
         super().__init__(*given[:-5])
         self.order, self.h, self.t_start, self.n_steps, self.tolerance = given[-5:]
-        self.tau = 0.0
+        self.tau, self.decided = 0.0, self.t_start
         self.going = self.based = False
         self.astray = -1
         self.span = self.clock.t_end - self.t_start
