@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from lagrangian import Scene, checks
 from lcpstep.errors import LcpStepError, UnknownName
 from lcpstep.events import EventDriven
-from lcpstep.maps.phase import NoReturn, is_driven, limit_of, phase_of, time_of, waits, with_phase
+from lcpstep.maps.phase import NoReturn, bounded, is_driven, limit_of, phase_of, time_of, waits, with_phase
 from lcpstep.maps.saltation.rubbing import Walk
 from lcpstep.simulation import simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
@@ -125,14 +125,18 @@ class EventMap:
         limit = float(self.limit or 0.0)
         first = min(self.scene.period, self.scene.t_span[1] - self.scene.t_span[0])
         for wait in waits(first, limit):
-            run = simulate(self.started(state, (t, t + wait)), self.method, keep="impacts")
-            log = run.impacts
-            of_kind = (log.kind == Kind[self.kind]) & (log.contact == self.contact)
-            hits = np.flatnonzero(of_kind & (log.time > t + AT_ONCE * wait))
-            if len(hits):
-                time = float(log.time[hits[0]])
-                row = int(np.searchsorted(run.t, time, side="right")) - 1
-                return Return(np.concatenate([run.q[row], run.v[row]]), time, t, run)
+            scene = self.started(state, (t, t + wait))
+            for method in bounded(self.method):
+                run = simulate(scene, method, keep="impacts")
+                log, cut = run.impacts, run.status == Status.TOO_MANY_EVENTS
+                of_kind = (log.kind == Kind[self.kind]) & (log.contact == self.contact)
+                hits = np.flatnonzero(of_kind & (log.time > t + AT_ONCE * wait))
+                if len(hits) and not (cut and run.t[-1] <= log.time[hits[0]]):
+                    time = float(log.time[hits[0]])
+                    row = int(np.searchsorted(run.t, time, side="right")) - 1
+                    return Return(np.concatenate([run.q[row], run.v[row]]), time, t, run)
+                if not cut:
+                    break
             if run.status != Status.DONE:
                 raise LcpStepError(f"the motion from x = {state.tolist()} ended early: {run.message}")
         raise NoReturn(state, limit, f"{self.kind} of contact {self.contact}")

@@ -14,16 +14,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import HybridScene, Scene, checks
 from lcpstep.errors import LcpStepError
+from lcpstep.events import EventDriven
 
 Array = NDArray[np.float64]
 TWO_PI = 2.0 * math.pi
 SPANS = 20.0  # of the scene: the longest that is waited for an event, where not given
+FEW, MORE = 16, 16  # events that are looked at first, and how many times as many each time after
 
 
 class NoReturn(LcpStepError):
@@ -62,6 +65,18 @@ def waits(first: float, limit: float) -> Iterator[float]:
     while wait < limit:
         wait = min(2.0 * wait, limit)
         yield wait
+
+
+def bounded(method: EventDriven) -> Iterator[EventDriven]:
+    """The method with bounds of the number of events, each several times the last, up to its own.
+
+    A span holds many more events than the one that is looked for, where that comes early.
+    """
+    most = FEW
+    while most < method.max_events:
+        yield replace(method, max_events=most)
+        most *= MORE
+    yield method
 
 
 def with_phase(scene: Scene | HybridScene, J: Array, t_x: Array, t_start: float, moved: Array) -> Array:

@@ -25,7 +25,7 @@ from lcpstep.events.hybrid.layout import SWITCH_LEAD
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
 from lcpstep.maps.modes import told
-from lcpstep.maps.phase import NoReturn, is_driven, limit_of, phase_of, time_of, waits, with_phase
+from lcpstep.maps.phase import NoReturn, bounded, is_driven, limit_of, phase_of, time_of, waits, with_phase
 from lcpstep.maps.saltation.switches import Tangent
 from lcpstep.refusals import refused
 from lcpstep.simulation import simulate
@@ -104,11 +104,15 @@ class SwitchMap:
         first = min(self.scene.period, self.scene.t_span[1] - self.scene.t_span[0])
         for wait in waits(first, limit):
             one = scene.started(scene.x0, scene.mode, (t, t + wait))
-            run = simulate(one, self.method, keep="impacts")
-            log, index = log_of(run), self.scene.system.names.index(self.mode)
-            for k in np.flatnonzero((log[:, 2] == index) & (log[:, 0] > t)):
-                if k + 1 == len(log) or log[k + 1, 0] > log[k, 0]:
-                    return self._return(run, log, int(k), t)
+            for method in bounded(self.method):
+                run = simulate(one, method, keep="impacts")
+                log, index = log_of(run), self.scene.system.names.index(self.mode)
+                cut = run.status == Status.TOO_MANY_EVENTS
+                for k in np.flatnonzero((log[:, 2] == index) & (log[:, 0] > t)):
+                    if (k + 1 == len(log) and not cut) or (k + 1 < len(log) and log[k + 1, 0] > log[k, 0]):
+                        return self._return(run, log, int(k), t)
+                if not cut:
+                    break
             if run.status != Status.DONE:
                 raise LcpStepError(
                     f"the motion from x = {np.asarray(scene.x0).tolist()} ended early: {run.message}"

@@ -55,11 +55,9 @@ class Piece:
 
 
 class Walk:
-    """Along the events of a finished run of `EventDriven` that has kept its states at them."""
+    """Along the events of a run of `EventDriven` that has kept its states at them."""
 
     def __init__(self, run: Trajectory) -> None:
-        if run.status != Status.DONE:
-            raise LcpStepError(f"the motion ended early: {run.message}")
         self.run, self.scene, self.n = run, with_friction(run.scene), run.scene.n_q
         self.s = start(self.scene, Smooth, run.method.rtol, run.method.atol)
         self.scale, self.sizes = max(float(np.max(np.abs(run.t))), 1e-300), sizes(run)
@@ -68,6 +66,8 @@ class Walk:
 
     def factors(self) -> list[Array]:
         """Matrices to be multiplied from the left one by one: flows and saltations in the order of time."""
+        if self.run.status != Status.DONE:
+            raise LcpStepError(f"the motion ended early: {self.run.message}")
         piece = self.begin()
         result = [self.lost(piece), piece.J]
         for time in self.times():
