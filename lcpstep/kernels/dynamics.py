@@ -12,7 +12,7 @@ from math import cos, pow, sin, sqrt
 import cython
 
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import copy, product, size_of_product
+from lcpstep.kernels.vectors import clear, copy, product, size_of_product
 from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
 # Fourth-order differences that stand in for a missing bias: the longest way they take; the third difference, relative
@@ -135,10 +135,10 @@ def bias(
         return
     if high <= low:
         low, high = -inf, inf
-    d = difference_step(m, t, low, high, q, v, shifted, G, rate)
+    d = difference_step(m, t, low, high, q, v, shifted, G, rate, out)
     beside = middle(t, low, high, d)
-    if beside == 0.0 and not m.gap_t.given and bend(m) > BENT:  # jumps in time are ends of intervals
-        beside = smooth_side(m, t, low, high, q, v, shifted, G, rate, d)
+    if beside == 0.0 and not m.gap_t.given and bend(m, out) > BENT:  # jumps in time are ends of intervals
+        beside = smooth_side(m, t, low, high, q, v, shifted, G, rate, out, d)
     if beside != 0.0:
         slope_beside(m, t, beside, q, v, shifted, G, rate, d, out)
         return
@@ -148,27 +148,27 @@ def bias(
 
 def difference_step(
     m: Model, t: float, low: float, high: float, q: Doubles, v: Doubles,
-    shifted: Doubles, G: Doubles, rate: Doubles,
+    shifted: Doubles, G: Doubles, rate: Doubles, even: Doubles,
 ) -> float:  # fmt: skip
     """A step short enough for the differences of the gaps' rates along the motion; it leaves these in `motion_now`.
 
-    Gaps may bend at any scale. A third difference that is too large asks for a shorter step, in proportion to its
-    third root, unless the last one has shown that this does not help: the curvature jumps nearby. They see nothing
-    of what is narrower than they are apart, but where its ends are those of the interval.
+    Gaps may bend at any scale. A third difference too large, or a value at t too far off, asks for a shorter step, in
+    proportion to its third root, unless the last one has shown that this does not help: the curvature jumps nearby.
+    They see nothing of what is narrower than they are apart, but where its ends are those of the interval.
     """
     speed = 1.0
     for i in range(m.n_q):
         speed = max(speed, abs(v[i]))
     d, before, shorter = min(DIFFERENCE / speed, (high - low) / (2.0 * REACH)), inf, 1.0
     for _ in range(SHORTENINGS):
-        bent = differences(m, t, middle(t, low, high, d), q, v, shifted, G, rate, d)
+        bent = differences(m, t, middle(t, low, high, d), q, v, shifted, G, rate, even, d)
         helped = bent > LOST or bent <= before * shorter
         if not bent > BENT or not helped:
             return d
         change = max(pow(SMOOTH / bent, 1.0 / 3.0), DIFFERENCE)
         before, shorter = bent, change * sqrt(change)
         d *= change
-    differences(m, t, middle(t, low, high, d), q, v, shifted, G, rate, d)
+    differences(m, t, middle(t, low, high, d), q, v, shifted, G, rate, even, d)
     return d
 
 
@@ -179,51 +179,66 @@ def middle(t: float, low: float, high: float, d: float) -> float:
 
 def smooth_side(
     m: Model, t: float, low: float, high: float, q: Doubles, v: Doubles,
-    shifted: Doubles, G: Doubles, rate: Doubles, d: float,
+    shifted: Doubles, G: Doubles, rate: Doubles, even: Doubles, d: float,
 ) -> float:  # fmt: skip
     """On which side of t, in steps, rates are smooth where their slope jumps nearby: not beyond the jump; 0 for none.
 
     A rate that bends just beside t is all but smooth on the wrong side of it too, but for how far it is from there.
     """
-    least, side = min(BENT, bend(m) * SMOOTH / BENT), 0.0
+    least, side = min(BENT, bend(m, even) * SMOOTH / BENT), 0.0
     for k in range(2):
         beside = 4.0 * k - 2.0
         if low <= t + (beside - REACH) * d and t + (beside + REACH) * d <= high:
-            bent = differences(m, t, beside, q, v, shifted, G, rate, d)
+            bent = differences(m, t, beside, q, v, shifted, G, rate, even, d)
             if bent < least:
                 least, side = bent, beside
     if side == 0.0:
-        differences(m, t, side, q, v, shifted, G, rate, d)
+        differences(m, t, side, q, v, shifted, G, rate, even, d)
     return side
 
 
 def differences(
     m: Model, t: float, beside: float, q: Doubles, v: Doubles,
-    shifted: Doubles, G: Doubles, rate: Doubles, d: float,
+    shifted: Doubles, G: Doubles, rate: Doubles, even: Doubles, d: float,
 ) -> float:  # fmt: skip
-    """Differences of G v + g_t between -d and d, and -2 d and 2 d, into `motion_now`; the third one, relative.
+    """Differences of G v + g_t between -d and d, and -2 d and 2 d, into `motion_now`; what of it bends, relative.
 
     beside : by how many steps d after t zero lies
+    even : (n_c,)   how far the value at t is from what the others lead to: a slope that jumps at zero shows in no
+        difference of theirs, nor one that jumps between them and t
     Contacts whose gap is a function have no obstacle that moves, and its place is free.
     """
     now = m.motion_now
     for c in range(m.n_c):
-        now[3 * c] = now[3 * c + 1] = now[3 * c + 2] = 0.0
-    for k in range(4):
+        now[3 * c] = now[3 * c + 1] = now[3 * c + 2] = even[c] = 0.0
+    for k in range(5):
         sign = 1.0 if k % 2 == 0 else -1.0
-        rates_ahead(m, t, d * (beside + sign * (1.0 + k // 2)), q, v, shifted, G, rate)
+        place = sign * (1.0 + k // 2) if k < 4 else -beside
+        weight = -value_share(place, -beside) if k < 4 else 1.0
+        rates_ahead(m, t, d * (beside + place), q, v, shifted, G, rate)
         for c in range(m.n_c):
+            u = product(G, v, c, m.n_q) + rate[c]
             now[3 * c + 2] = max(now[3 * c + 2], abs(rate[c]) + size_of_product(G, v, c, m.n_q))
-            now[3 * c + k // 2] += (product(G, v, c, m.n_q) + rate[c]) * sign
-    return bend(m)
+            even[c] = even[c] + weight * u
+            if k < 4:
+                now[3 * c + k // 2] += u * sign
+    return bend(m, even)
 
 
-def bend(m: Model) -> float:
-    """The third one of the differences in `motion_now`, relative."""
+def value_share(k: float, x: float) -> float:
+    """Value at x of the cubic that is one at k and zero at the others of -2, -1, 1, 2."""
+    if k * k == 1.0:
+        return -(x * x - 4.0) * (x + k) * k / 6.0
+    return (x * x - 1.0) * (x + k) * k / 24.0
+
+
+def bend(m: Model, even: Doubles) -> float:
+    """The third one of the differences in `motion_now`, or how far off the value at t is, relative."""
     now, bent = m.motion_now, 0.0
     for c in range(m.n_c):
         if now[3 * c + 2] > 0.0:
-            bent = max(bent, abs(now[3 * c + 1] - 2.0 * now[3 * c]) / now[3 * c + 2])
+            odd = abs(now[3 * c + 1] - 2.0 * now[3 * c])
+            bent = max(bent, max(odd, abs(even[c])) / now[3 * c + 2])
     return bent
 
 
@@ -232,6 +247,7 @@ def slope_beside(
     shifted: Doubles, G: Doubles, rate: Doubles, d: float, out: Doubles,
 ) -> None:  # fmt: skip
     """The slope at t of the quartic through five values of G v + g_t, d apart, the middle one `beside` d after t."""
+    clear(out, m.n_c)
     for k in range(-2, 3):
         rates_ahead(m, t, d * (beside + k), q, v, shifted, G, rate)
         for c in range(m.n_c):
