@@ -162,7 +162,7 @@ class Walk:
         x_end, J = self.flow.reached()
         for a, b in self.between_corners(t, end):
             point.hold(self.s, a, x_end, mode, direction)
-            code = self.flow.follow(a, b)
+            code = self.flow.go_on(a, b)
             if code != Status.DONE:
                 raise LcpStepError(f"the variational flow could not be integrated: {Status(code).name}")
             x_end, J = self.flow.reached()

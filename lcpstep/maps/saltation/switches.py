@@ -22,6 +22,7 @@ from lcpstep.arrays import doubles
 from lcpstep.events.hybrid.field import INNER, OUTER, Machine, field, guard_gradient, reach, surface_gradient
 from lcpstep.events.hybrid.kinds import ARRIVE, NOT_SLIDING
 from lcpstep.events.hybrid.layout import SWITCH_LEAD
+from lcpstep.kernels.flow import follow
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import DONE, NOT_TRANSVERSAL
 from lcpstep.kernels.vectors import copy
@@ -125,18 +126,12 @@ def times(s: Tangent, D: Doubles) -> None:
 
 def flow(s: Tangent, a: float, b: float) -> int:
     """Smooth motion in the mode from s.start at a to b, state and derivative together; a status."""
-    n, span, t = s.n_x, b - a, a
+    n = s.n_x
     copy(s.y, s.start, n)
     copy(after(s.y, n), s.J, n * n)
-    s.begin(span)
-    while t < b:
-        code = s.take_step(t, b - t, span)
-        if code != DONE:
-            return code
-        t = b if s.length >= b - t else t + s.length
-        copy(s.y, s.y_new, n + n * n)
+    code = follow(s, a, b)
     copy(s.J, after(s.y, n), n * n)
-    return DONE
+    return code
 
 
 def variation(s: Tangent, t: float, z: Doubles, out: Doubles) -> None:

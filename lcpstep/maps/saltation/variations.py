@@ -18,8 +18,8 @@ from lcpstep.events.codes import RELATIVE_STEP, SLIDES
 from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.held import right_hand_side
 from lcpstep.events.contacts.state import Rubbing
+from lcpstep.kernels.flow import follow
 from lcpstep.kernels.rungekutta import RungeKutta
-from lcpstep.kernels.status import DONE
 from lcpstep.kernels.vectors import clear, copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, max
 
@@ -54,7 +54,7 @@ class Variations(RungeKutta):
 
     @cython.ccall
     def start(self, t: float, x: Any, scale: Any) -> None:
-        """Begin at the state x (n_x,), whose modes are held; scale : (n_x,) of `differences`."""
+        """Begin at the state x (n_x,), whose modes are held; scale : (n_x,) lengths that steps are a share of."""
         n, given = self.n_x, doubles(x)
         copy(self.scale, doubles(scale), n)
         clear(self.y, n + n * n)
@@ -68,17 +68,9 @@ class Variations(RungeKutta):
             differentiate(self, t)
 
     @cython.ccall
-    def follow(self, a: float, b: float) -> int:
+    def go_on(self, a: float, b: float) -> int:
         """Go on from a to b; a status."""
-        t, span, n = a, b - a, self.n
-        self.begin(span)
-        while t < b:
-            code = self.take_step(t, b - t, span)
-            if code != DONE:
-                return code
-            t = b if self.length >= b - t else t + self.length
-            copy(self.y, self.y_new, n)
-        return DONE
+        return follow(self, a, b)
 
     @cython.ccall
     def reached(self) -> Any:
