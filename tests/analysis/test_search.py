@@ -37,6 +37,7 @@ def random(n):
     return random_starts([[-0.5, -2.0], [0.5, 2.0]], n, seed=0)
 
 
+@pytest.mark.slow
 def test_few_starts_are_followed_for_long(simulated):
     scene, starts, longest = between_walls(), random(40), 150
     found = search(scene, EventDriven(), starts, 0.0, longest)

@@ -9,6 +9,7 @@ import pytest
 from benchmarks.judge.describe import Description
 from lagrangian import LinearContacts, LinearSystem, Scene
 from lcpstep import EventDriven, Status, simulate
+from tests.marks import slow
 
 METHODS = [EventDriven(), EventDriven(1e-9, 1e-9)]
 
@@ -70,7 +71,7 @@ def test_beads_without_room_come_to_rest_where_rounding_contradicts_the_last_blo
     at_rest(beads.scene(), method, beads.q0)
 
 
-@pytest.mark.parametrize("tolerance", [1e-5, 1e-7, 1e-9])
+@pytest.mark.parametrize("tolerance", slow([1e-5, 1e-7, 1e-9], 1e-5, 1e-7))
 def test_bodies_that_come_to_rest_where_their_springs_do_stay_there(tolerance):
     """Plastic beads end on the floor, at the ends of their springs: what is left of the forces has no digits."""
     G = np.vstack([np.diff(np.eye(5), axis=0), np.eye(5)[0]])
