@@ -1,4 +1,4 @@
-"""Ctrl-C while random scenes are judged: what is known is told, and workers leave it to the one that waits for them."""
+"""Ctrl-C while random scenes are judged: what is known is told, and workers leave it to the one that waits."""
 
 import os
 import signal
