@@ -61,8 +61,7 @@ def allow_for_growth(found: Reference, grown: Growth | None, result: Study) -> N
     share = ROUNDING * grown.size / grown.disturbance
     apart = Difference(found.motion, grown.disturbed, t_end=min(grown.horizon, result.compared_until))
     for measure, value in result.uncertainty.items():
-        grows = math.nan if measure == "unmatched" else float(getattr(apart, measure))
-        if math.isfinite(grows):
+        if measure != "unmatched" and math.isfinite(grows := float(getattr(apart, measure))):
             result.uncertainty[measure] = max(value, share * grows)
 
 

@@ -1,4 +1,4 @@
-"""A smooth motion from one time to another, by steps of Runge-Kutta, as a kernel."""
+"""A smooth motion from one time to another, by steps of Runge-Kutta, and the rates of its derivative, as kernels."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import cython
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import DONE
 from lcpstep.kernels.vectors import copy
+from lcpstep.pointers import Doubles
 
 
 def follow(s: RungeKutta, a: float, b: float) -> int:
@@ -20,3 +21,13 @@ def follow(s: RungeKutta, a: float, b: float) -> int:
         t = b if s.length >= b - t else t + s.length
         copy(s.y, s.y_new, s.n)
     return DONE
+
+
+def derivative_rates(F_x: Doubles, J: Doubles, out: Doubles, n: int) -> None:
+    """Rates F_x J, (n, n), of the derivative J by the initial state."""
+    for i in range(n):
+        for j in range(n):
+            total = 0.0
+            for k in range(n):
+                total += F_x[i * n + k] * J[k * n + j]
+            out[i * n + j] = total

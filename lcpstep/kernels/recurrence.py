@@ -19,6 +19,8 @@ FAINT = 2.0**13  # roundings of a speed: next to nothing beside the speeds of th
 CERTAIN = 2.0**-7  # of 1 - rho: what the speeds' rounding may leave of it, for the sum to be known
 
 
+@cython.ccall
+@cython.nogil
 def looks_back(turn: int) -> bool:
     """Whether speeds are compared with those before problem `turn` from then on."""
     return turn & (turn - 1) == 0

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.kernels.recurrence import looks_back
 from lcpstep.stepping.steps import LEFT, RESOLUTION, RETURNED, ROUNDING, TURNS
 
 Array = NDArray[np.float64]
@@ -63,7 +64,7 @@ class Blows:
         if not self.alone or self.taken == 1:
             return False
         near = np.abs(u - self.u_before) <= RETURNED * self.fastest
-        if (self.taken - 1) & (self.taken - 2) == 0:  # powers of two, as in `kernels.recurrence`
+        if looks_back(self.taken - 1):
             self.u_before = u.copy()
         return bool(np.all(near[self.active]))
 

@@ -22,7 +22,7 @@ from lcpstep.arrays import doubles
 from lcpstep.events.hybrid.field import INNER, OUTER, Machine, field, guard_gradient, reach, surface_gradient
 from lcpstep.events.hybrid.kinds import ARRIVE, NOT_SLIDING
 from lcpstep.events.hybrid.layout import SWITCH_LEAD
-from lcpstep.kernels.flow import follow
+from lcpstep.kernels.flow import derivative_rates, follow
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import DONE, NOT_TRANSVERSAL
 from lcpstep.kernels.vectors import copy
@@ -153,13 +153,8 @@ def variation(s: Tangent, t: float, z: Doubles, out: Doubles) -> None:
                 s.F_x[i * n + j] += 2.0 * (1 + k) * weight * (s.up[i] - s.down[i]) / (above - s.x[j])
     copy(s.x, z, n)
     field(s.m, s.mode, t, s.x, s.up)
-    for i in range(n):
-        out[i] = s.up[i]
-        for j in range(n):
-            total = 0.0
-            for k in range(n):
-                total += s.F_x[i * n + k] * z[n + k * n + j]
-            out[n + i * n + j] = total
+    copy(out, s.up, n)
+    derivative_rates(s.F_x, after(z, n), after(out, n), n)
 
 
 def switch(s: Tangent, lines: Doubles, further: int, moves: bool) -> bool:

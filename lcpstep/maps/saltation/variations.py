@@ -18,7 +18,7 @@ from lcpstep.events.codes import RELATIVE_STEP, SLIDES
 from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.held import right_hand_side
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.kernels.flow import follow
+from lcpstep.kernels.flow import derivative_rates, follow
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.vectors import clear, copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, max
@@ -93,11 +93,7 @@ class Variations(RungeKutta):
             return False
         for i in range(n):
             dy[i] = self.F[i] / self.unit[i]
-            for j in range(n):
-                total = 0.0
-                for k in range(n):
-                    total += self.F_x[i * n + k] * y[n + k * n + j]
-                dy[n + i * n + j] = total
+        derivative_rates(self.F_x, after(y, n), after(dy, n), n)
         return True
 
 
