@@ -34,14 +34,13 @@ class Blows:
     ----------
     active : (n_c,) of bool   contacts that may bear
     slow : speed beyond which they strike, or separate; negative where all take part at once
-    restitution : (n_c,), where nothing but contacts takes part
+    restitution : (n_c,)
     """
 
-    def __init__(self, active: Any, slow: float, restitution: Array | None = None) -> None:
+    def __init__(self, active: Any, slow: float, restitution: Array) -> None:
         self.active, self.slow, self.several = active, slow, slow >= 0.0
         self.taken, self.fastest, self.last, self.chosen = 0, 0.0, False, active
-        self.alone, self.u_before = restitution is not None, np.full(len(active), np.inf)
-        self.elastic = restitution is not None and bool(np.all(restitution[active] == 1.0))
+        self.u_before, self.elastic = np.full(len(active), np.inf), bool(np.all(restitution[active] == 1.0))
 
     def follows(self, u: Array) -> bool:
         """Whether there is another blow, at these gap velocities."""
@@ -61,7 +60,7 @@ class Blows:
 
     def returns(self, u: Array) -> bool:
         """Whether the blows so far have come back to gap velocities of before."""
-        if not self.alone or self.taken == 1:
+        if self.taken == 1:
             return False
         near = np.abs(u - self.u_before) <= RETURNED * self.fastest
         if looks_back(self.taken - 1):

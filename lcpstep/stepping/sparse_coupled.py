@@ -85,7 +85,7 @@ class CoupledRun(SparseRun):
         slip = self.stiction.slip(t_next)
         slow = self.slow(step, free, active, s_t)
         modes, p = np.where(active & ~self.active, STICK, self.modes), self.rows_p
-        v, speed = self.v, np.max(np.abs(v_free))
+        v, speed, restitution = self.v, np.max(np.abs(v_free)), self.equations.restitution
         for _ in range(MAX_ITERATIONS):
             q = self.q + step.h * (step.theta * v + (1.0 - step.theta) * self.v)
             data, J_t = self.joints.at(t_next, q, v)
@@ -93,7 +93,7 @@ class CoupledRun(SparseRun):
                 step.coupled.turn(data, step.theta * data + (1.0 - step.theta) * J_start)
             before = v
             known = Before(v_free, self.u, sliding), (J_t, s_t, slip)
-            point, status = self.strike(step, Blows(active, slow), *known, modes, p)
+            point, status = self.strike(step, Blows(active, slow, restitution), *known, modes, p)
             if status != Status.DONE:
                 return v, status
             modes, p = point.modes, point.p
@@ -112,7 +112,7 @@ class CoupledRun(SparseRun):
             return v, Status.JOINTS_FAILED
         if np.any(left[self.joints.n :][idle] > granted):
             return v, Status.LCP_FAILED
-        problem, strikes = self.problem(step, active, *known, Blows(active, slow))
+        problem, strikes = self.problem(step, active, *known, Blows(active, slow, restitution))
         rebound = np.any(strikes) * self.tangent_restitution * sliding
         self.stiction.note(step.coupled, problem, point, self.T @ v + slip, rebound)
         self.modes, self.active = modes, active

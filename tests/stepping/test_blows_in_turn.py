@@ -129,18 +129,43 @@ def rising(t, q, v, p, out):
 def between_table_and_ceiling(restitution, way=""):
     """Three beads on a table that rises to the ceiling, from 0.7 m below it, in 0.2 s: they fill it after 0.2 s."""
     G = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, -1.0, 1.0], [0.0, 0.0, -1.0]])
-    M = np.diag([1.0, 1.0, 0.5])
-    if way == "sparse":
-        M, G = sparse.csr_array(M), sparse.csr_array(G)
-    contacts = LinearContacts(G, [0.0, 0.0, 0.0, 0.6], restitution, motion=rising)
-    return Scene(LinearSystem(M, force=[0.0, -0.1, 0.2]), [0.1, 0.2, 0.3], np.zeros(3), (0.0, 0.5), contacts)
+    M, q0, v0, f, T, extra = (
+        np.diag([1.0, 1.0, 0.5]),
+        [0.1, 0.2, 0.3],
+        np.zeros(3),
+        [0.0, -0.1, 0.2],
+        None,
+        {},
+    )
+    if "friction" in way:  # they move to the side too
+        G, T = np.kron([[1.0, 0.0]], G), np.kron([[0.0, 1.0]], G)
+        M, q0, v0, f = (
+            np.kron(np.eye(2), M),
+            [*q0, *np.zeros(3)],
+            np.append(v0, [0.1, 0.0, -0.2]),
+            [*f, *np.zeros(3)],
+        )
+    if "joint" in way:  # the last one is made of two
+        M, q0, v0, f = np.diag([1.0, 1.0, 0.2, 0.3]), [*q0, 0.3], np.zeros(4), [*f, 0.0]
+        G, extra = np.column_stack([G, np.zeros(4)]), {"joints": LinearJoints([[0.0, 0.0, 1.0, -1.0]])}
+    if "sparse" in way:
+        M, G, T = sparse.csr_array(M), sparse.csr_array(G), None if T is None else sparse.csr_array(T)
+    friction = None if T is None else Coulomb(0.3, T)
+    contacts = LinearContacts(G, [0.0, 0.0, 0.0, 0.6], restitution, motion=rising, friction=friction)
+    return Scene(LinearSystem(M, force=f), q0, v0, (0.0, 0.5), contacts, **extra)
 
 
 @pytest.mark.usefixtures("sparse_steps")
 @pytest.mark.parametrize("restitution", [0.3, 0.8])
 @pytest.mark.parametrize(
     ("way", "method"),
-    [("", Moreau(1e-3)), ("sparse", Moreau(1e-3)), ("", Moreau(1e-2, tolerance=1e-3))],
+    [
+        *(
+            (way, Moreau(1e-3))
+            for way in ("", "friction", "joint", "sparse", "sparse friction", "sparse joint")
+        ),
+        *((way, Moreau(1e-2, tolerance=1e-3)) for way in ("", "friction", "joint")),
+    ],
     ids=str,
 )
 def test_a_table_that_leaves_no_room_below_the_ceiling_ends_the_run(way, method, restitution):

@@ -98,7 +98,7 @@ def choose(s: State, c: Rows, b: Blows) -> bool:
 
 def look_back(m: Model, c: Rows, b: Blows) -> None:
     """Where the blows have come back to the speeds of before, let no other follow, or but a plastic one."""
-    if c.n_t + c.n_j > 0 or b.last:
+    if b.last:
         return
     back, elastic = b.taken > 1, True
     for k in range(b.n_a):
