@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from lagrangian import checks
 from lcpstep.culprits import culprit
+from lcpstep.depth import mass
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.faults import cause
 from lcpstep.hindrance import hindrance
@@ -147,13 +148,19 @@ class Run(Portions):
     def stands_still(self) -> bool:
         """Whether steps and events go on that take the time on by next to nothing, or without sense."""
         look = self.standstill
-        stands = look.reached(self.done + self.recorder.taken, self.now, self.recorder.impacts)
+        taken = self.done + self.recorder.taken
+        stands = look.reached(taken, self.now, self.recorder.impacts, self.kinetic_energy)
         if look.crawls and not stands:
             q, v = (x.copy() for x in self.state)
             stands = not self.asked and bool(unrepeatable(self.scene, self.now, q, v))
             stands, self.asked = stands or bool(valley(self.scene, self.now, q, v)), True
         self.stuck = look.words if stands else ""
         return stands
+
+    def kinetic_energy(self) -> float:
+        """That of the last known state."""
+        q, v = (x.copy() for x in self.state)
+        return 0.5 * float(v @ (mass(self.scene, self.now, q, v) @ v))
 
     def empty(self) -> None:
         """Move what the kernels have written to the recorder's keeping."""
@@ -210,7 +217,7 @@ class Run(Portions):
             return text
         q, v = self.state
         found = hindrance(self.scene, self.now, self.horizon, q.copy(), v.copy())
-        if not found and code == Status.STEP_TOO_SMALL:
+        if not found and code == Status.STEP_TOO_SMALL and not self.stuck:
             found = "a larger tolerance may do"
         return f"{text}: {found}" if found else text
 

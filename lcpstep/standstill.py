@@ -1,8 +1,10 @@
 """Whether a run has come to a standstill: steps that go on, and hardly take the time on with them.
 
 A step may be short, and impacts as many as they like. But where so many steps, or events that are no impacts, take
-the time on by next to nothing of the span, the rest of it would take days. Where a body is to rest that one contact
-force cannot hold, or a force is no function of time and state, each step meets the tolerance, and none is long.
+the time on by next to nothing of the span, the rest of it would take days. So it would where a million impacts do and
+double the energy, as elastic bodies between obstacles that close in: light balls between heavy ones meet them as often,
+at one energy. Where a body is to rest that one contact force cannot hold, or a force is no function of time and state,
+each step meets the tolerance, and none is long.
 """
 
 from __future__ import annotations
@@ -11,6 +13,10 @@ import math
 from collections.abc import Callable
 
 STEPS = 20_000  # in a row
+IMPACTS, GROWTH = (
+    1_000_000,
+    2.0,
+)  # of any kind in a row, in which the kinetic energy becomes so many times as large
 PER_IMPACT = 100  # steps that the search for one may take
 # Of the span, or of what so many of the longest steps do: what they take the time on by at least, or crawl
 LEAST, CRAWL = 1e-6, 0.1
@@ -30,17 +36,35 @@ class Standstill:
     def __init__(self, span: tuple[float, float], h: float) -> None:
         self.way = min(span[1] - span[0], h * STEPS)
         self.steps, self.since, self.words, self.crawls = 0, -math.inf, "", False
+        self.first, self.begin, self.energy = 0, -math.inf, 0.0  # of those of any kind
 
-    def reached(self, steps: int, now: float, impacts: Callable[[float], int]) -> bool:
+    def reached(
+        self, steps: int, now: float, impacts: Callable[[float], int], energy: Callable[[], float]
+    ) -> bool:
         """Whether a run that has come to this time by so many steps and events stands still.
 
-        impacts : how many there were from a time on
+        impacts : how many there were from a time on;  energy : the kinetic energy now
         """
+        if steps - self.first >= IMPACTS and self.ever_faster(steps, now, energy()):
+            return True
         onward, taken = now - self.since, steps - self.steps
         if taken < STEPS and onward < CRAWL * self.way:
             self.crawls = False  # nothing new: what asks why is slow, and was asked
             return False
         self.crawls = onward < CRAWL * self.way and taken - PER_IMPACT * impacts(self.since) >= STEPS
-        self.words = f"{taken} steps or events have taken the time on by {onward:.3g} s only"
+        self.words = told(taken, onward)
         self.steps, self.since = steps, now
         return self.crawls and onward < LEAST * self.way
+
+    def ever_faster(self, steps: int, now: float, energy: float) -> bool:
+        """Whether bodies go to and fro ever faster, and hardly take the time on."""
+        onward, taken, fed = now - self.begin, steps - self.first, energy >= GROWTH * self.energy
+        self.first, self.begin, self.energy = steps, now, energy
+        self.words = f"{told(taken, onward)}, as where bodies go to and fro between obstacles that close in,"
+        self.crawls = onward < LEAST * self.way and fed
+        return self.crawls
+
+
+def told(taken: int, onward: float) -> str:
+    """How little so many steps have done, in words."""
+    return f"{taken} steps or events have taken the time on by {onward:.3g} s only"
