@@ -1,10 +1,10 @@
 """Whether a run has come to a standstill: steps that go on, and hardly take the time on with them.
 
-A step may be short, and impacts as many as they like. But where so many steps, or events that are no impacts, take
-the time on by next to nothing of the span, the rest of it would take days. So it would where a million impacts do and
-double the energy, as elastic bodies between obstacles that close in: light balls between heavy ones meet them as often,
-at one energy. Where a body is to rest that one contact force cannot hold, or a force is no function of time and state,
-each step meets the tolerance, and none is long.
+A step may be short, and impacts as many as they like. But where so many steps, or events that are no impacts,
+take the time on by next to nothing of the span, the rest of it would take days. So it would where a million
+impacts do and double the energy, as elastic bodies between obstacles that close in: light balls between heavy
+ones meet them as often, at one energy. Where a body is to rest that one contact force cannot hold, or a force is
+no function of time and state, each step meets the tolerance, and none is long.
 """
 
 from __future__ import annotations
