@@ -220,7 +220,21 @@ def _equations(system: LinearSystem | System) -> dict[str, Any]:
         fields |= {"force": system.force, "mass": system.mass if callable(system.mass) else ABSENT}
         fields |= {"force_q": system.force_q or ABSENT, "force_v": system.force_v or ABSENT}
     inverse = np.linalg.inv(M) if np.any(M) else square
+    fields |= {"M_ends": ends(inverse), "C_ends": ends(fields["C"], fields["K"])}
     return fields | {"linear": isinstance(system, LinearSystem), "M": M, "M_inverse": inverse}
+
+
+def ends(*matrices: NDArray[Any]) -> NDArray[np.intp]:
+    """Where the entries of each row begin, and end, that are not zero in all of these matrices, (n, 2)."""
+    rows, columns = matrices[0].shape
+    found, some = np.zeros((rows, 2), dtype=np.intp), np.zeros((rows, columns), dtype=bool)
+    for matrix in matrices:
+        some |= matrix != 0.0
+    any_of = some.any(axis=1)
+    if columns > 0:
+        found[:, 0], found[:, 1] = some.argmax(axis=1), columns - some[:, ::-1].argmax(axis=1)
+    found[~any_of] = 0
+    return found
 
 
 def _tangents(scene: Scene) -> dict[str, Any]:
@@ -234,7 +248,8 @@ def _tangents(scene: Scene) -> dict[str, Any]:
         fields |= {"flat": False, "jacobian": friction.tangent, "gap_t": slip}
         fields["G"] = np.zeros((scene.n_c, scene.n_q))
     else:
-        fields |= {"G": dense("friction.tangent", friction.tangent)}
+        G = dense("friction.tangent", friction.tangent)
+        fields |= {"G": G, "G_ends": ends(G)}
         if isinstance(friction.slip, Harmonic):
             fields |= {"motion": swaying, "p": sway(friction.slip, scene.n_c)}
         else:
@@ -259,12 +274,15 @@ def _contacts(scene: Scene, contacts: LinearContacts | Contacts | None) -> dict[
 
 def _rows(n_c: int) -> dict[str, Any]:
     fields: dict[str, Any] = dict.fromkeys(("motion", "gap", "jacobian", "gap_t", "bias"), ABSENT)
-    return fields | {"flat": True, "offset": np.zeros(n_c), "restitution": np.zeros(n_c)}
+    none = np.zeros((n_c, 2), dtype=np.intp)
+    return fields | {"flat": True, "offset": np.zeros(n_c), "restitution": np.zeros(n_c), "G_ends": none}
 
 
 def _flat_rows(contacts: LinearContacts) -> dict[str, Any]:
+    G = dense("G", contacts.G)
     return _rows(contacts.n_c) | {
-        "G": dense("G", contacts.G),
+        "G": G,
+        "G_ends": ends(G),
         "offset": np.array(contacts.offset),
         "restitution": np.array(contacts.restitution),
         "motion": contacts.motion or ABSENT,

@@ -51,5 +51,5 @@ def inverse_mass(m: Model, M: Doubles, y: Doubles, x: Doubles) -> None:
     copy(y, x, n)
     for i in range(n):
         x[i] = 0.0
-        for j in range(n):
+        for j in range(m.M_ends[2 * i], m.M_ends[2 * i + 1]):
             x[i] += m.M_inverse[i * n + j] * y[j]

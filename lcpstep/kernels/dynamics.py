@@ -62,7 +62,7 @@ def total_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> Non
         return
     external_force(m, t, q, v, out)
     for i in range(m.n_q):
-        for j in range(m.n_q):
+        for j in range(m.C_ends[2 * i], m.C_ends[2 * i + 1]):
             out[i] -= m.C[i * m.n_q + j] * v[j] + m.K[i * m.n_q + j] * q[j]
 
 
@@ -93,7 +93,7 @@ def gaps(m: Model, t: float, q: Doubles, v: Doubles, g: Doubles) -> None:
     obstacle(m, t, q, v)
     for c in range(m.n_c):
         g[c] = m.offset[c] - m.motion_now[3 * c]
-        for j in range(m.n_q):
+        for j in range(m.G_ends[2 * c], m.G_ends[2 * c + 1]):
             g[c] += m.G[c * m.n_q + j] * q[j]
 
 

@@ -12,4 +12,5 @@ cdef class Model:
     cdef readonly double omega
     cdef Doubles M, M_inverse, C, K, constant, cosine, sine, G, offset, restitution, frame_now, motion_now, x
     cdef Doubles x_t, mass_now
+    cdef Indices M_ends, C_ends, G_ends
     cdef readonly Function force, frame, mass, force_q, force_v, motion, gap, jacobian, gap_t, bias

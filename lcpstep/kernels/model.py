@@ -13,7 +13,7 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.arrays import doubles
+from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.function import Function
 from lcpstep.pointers import after
 
@@ -23,6 +23,7 @@ class Model:
 
     M, M_inverse, C, K : (n_q, n_q);  constant, cosine, sine : (n_q,);  omega
     G : (n_c, n_q);  offset, restitution : (n_c,)
+    M_ends, C_ends, G_ends : (n, 2)   of M_inverse, of C and K, of G: where the entries of a row begin and end
     force, frame, mass, force_q, force_v, motion, gap, jacobian, gap_t, bias : Function, `given` or not
     modes, mode      fields of the modes as `Functions` of x = (q, v), and the one at hand; `moded` or not
     x, x_t : (2 n_q,)   work space: x, its field;  mass_now : (n_q, n_q)   M, beside these
@@ -50,6 +51,8 @@ class Model:
         self.cosine, self.sine = doubles(own["cosine"]), doubles(own["sine"])
         self.G, self.offset = doubles(own["G"]), doubles(own["offset"])
         self.restitution = doubles(own["restitution"])
+        self.M_ends, self.C_ends = indices(own["M_ends"]), indices(own["C_ends"])
+        self.G_ends = indices(own["G_ends"])
         self.frame_now, self.motion_now = doubles(own["frame_now"]), doubles(own["motion_now"])
         made = {
             name: Function(fields[name], own["p"], n_q, n_q, shape)

@@ -36,6 +36,14 @@ def product(G: Doubles, v: Doubles, c: int, n: int) -> float:
     return total
 
 
+def product_between(G: Doubles, v: Doubles, c: int, n: int, ends: Indices) -> float:
+    """(G v)_c, the entries of row c before the column ends[2 c], and from ends[2 c + 1] on, being zero."""
+    total = 0.0
+    for j in range(ends[2 * c], ends[2 * c + 1]):
+        total += G[c * n + j] * v[j]
+    return total
+
+
 def size_of_product(G: Doubles, v: Doubles, c: int, n: int) -> float:
     """Size of the terms of (G v)_c, their signs left aside."""
     size = 0.0

@@ -167,7 +167,7 @@ def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool
     X and W are those of the contacts; with tangents or joints, or where they change, there is but room for them.
     """
     M, C, K, G = m.arrays["M"], m.arrays["C"], m.arrays["K"], m.arrays["G"]
-    if is_stiff(m):
+    if stiff := is_stiff(m):
         A_inverse: Any = inverse(M + h * theta * C + (h * theta) ** 2 * K)
         A_f = h * A_inverse
         A_q, A_v = A_f.dot(K), A_inverse.dot(h * C + h * h * theta * K)
@@ -180,4 +180,4 @@ def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool
         X, W = A_g.T, G.dot(A_g)
     else:
         X, W = np.zeros((c.n, m.n_q)), np.zeros((c.n, c.n))
-    return Plan(h, theta, slack, constant, {"A_q": A_q, "A_v": A_v, "A_f": A_f, "X": X, "W": W})
+    return Plan(h, theta, slack, constant, stiff, {"A_q": A_q, "A_v": A_v, "A_f": A_f, "X": X, "W": W})

@@ -55,10 +55,10 @@ def acting(m: Model, w: Work) -> None:
         if m.linear:
             if not m.force.given:
                 w.jolt[i] += abs(m.constant[i]) + abs(m.cosine[i]) + abs(m.sine[i])
-            for j in range(n):
+            for j in range(m.C_ends[2 * i], m.C_ends[2 * i + 1]):
                 w.jolt[i] += abs(m.C[i * m.n_q + j] * w.v[j]) + abs(m.K[i * m.n_q + j] * w.q[j])
     for i in range(n):
         w.a_try[i] = abs(w.free[i])
         if not m.mass.given:
-            for j in range(n):
+            for j in range(m.M_ends[2 * i], m.M_ends[2 * i + 1]):
                 w.a_try[i] += abs(m.M_inverse[i * m.n_q + j]) * w.jolt[j]

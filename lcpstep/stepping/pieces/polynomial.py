@@ -22,7 +22,7 @@ from lcpstep.kernels.dynamics import gap_rates, gaps, obstacle
 from lcpstep.kernels.linear import grow_factor, solve_factored
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.turn import Turn
-from lcpstep.kernels.vectors import add, clear, copy, product
+from lcpstep.kernels.vectors import add, clear, copy, product, product_between
 from lcpstep.pointers import Doubles, after, max
 from lcpstep.stepping.pieces.codes import CLOSED
 from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, respond
@@ -178,15 +178,15 @@ def taylor(m: Model, plan: Plan, w: Work, z: Polynomial, t: float) -> bool:
             w.a_try[i] = m.cosine[i] * c_k + m.sine[i] * s_k
             moves = moves or w.a_try[i] != 0.0
             w.a_try[i] += m.constant[i] if k == 0 else 0.0
-            for j in range(n):
+            for j in range(m.C_ends[2 * i], m.C_ends[2 * i + 1]):
                 w.a_try[i] -= (
                     m.C[i * n + j] * (k + 1) * z.T[(k + 1) * n + j] + m.K[i * n + j] * z.T[k * n + j]
                 )
         for i in range(n):
-            w.v_try[i] = product(m.M_inverse, w.a_try, i, w.n_q)
+            w.v_try[i] = product_between(m.M_inverse, w.a_try, i, w.n_q, m.M_ends)
         if w.closed_now > 0:
             for c in range(w.n_c):
-                w.alpha[c] = product(m.G, w.v_try, c, w.n_q)
+                w.alpha[c] = product_between(m.G, w.v_try, c, w.n_q, m.G_ends)
             press(w, w.v_try, 0.0)
         for i in range(n):
             z.T[(k + 2) * n + i] = w.v_try[i] / ((k + 1) * (k + 2))
@@ -276,6 +276,10 @@ def contacts_at(
     """Gaps and gap velocities at tau after the base of the piece."""
     state_at(m, plan, w, z, t, tau)
     gaps(m, t + tau, z.q, z.v, g)
+    if m.flat:
+        for c in range(w.n_c):
+            u[c] = product_between(m.G, z.v, c, w.n_q, m.G_ends) - m.motion_now[3 * c + 1]
+        return
     gap_rates(m, t + tau, z.q, z.v, w.G_try, w.gap_t_try)
     for c in range(w.n_c):
         u[c] = product(w.G_try, z.v, c, w.n_q) + w.gap_t_try[c]

@@ -60,7 +60,7 @@ def height_terms(m: Model, w: Work, z: Polynomial, c: int) -> float:
         return 0.0
     size = abs(m.offset[c]) + (abs(m.motion_now[3 * c]) if moves(m) else 0.0)
     for i in range(w.n_q):
-        size += abs(w.G_try[c * w.n_q + i] * z.q[i])
+        size += abs(m.G[c * w.n_q + i] * z.q[i])
     return size
 
 

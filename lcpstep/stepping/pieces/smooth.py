@@ -18,7 +18,7 @@ from lcpstep.kernels.acceleration import factor_mass, response
 from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, total_force
 from lcpstep.kernels.linear import grow_factor, invert_matrix, solve_factored
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import add, copy, product
+from lcpstep.kernels.vectors import add, copy, product, product_between
 from lcpstep.pointers import Doubles, abs, after, max, min
 from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
 from lcpstep.stepping.pieces.state import Plan, Work
@@ -132,7 +132,10 @@ def measure(m: Model, w: Work, t: float) -> None:
     gaps(m, t, w.q, w.v, w.gap)
     gap_rates(m, within(w, t), w.q, w.v, w.G, w.gap_t)
     for c in range(w.n_c):
-        w.rate[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+        if m.flat:
+            w.rate[c] = product_between(m.G, w.v, c, w.n_q, m.G_ends) + w.gap_t[c]
+        else:
+            w.rate[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
         if w.status[c] == CLOSED:
             w.gap[c] = w.rate[c] = 0.0
 

@@ -6,6 +6,7 @@ cdef class Plan:
     cdef readonly object matrices
     cdef public double h, theta, slack
     cdef public bint constant
+    cdef bint stiff
     cdef Doubles A_q, A_v, A_f, X, W
 
 cdef class State:

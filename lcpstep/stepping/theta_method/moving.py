@@ -30,6 +30,7 @@ class Plan:
     h, theta
     slack                a predicted gap this small is closed: rounding must not open what rests
     constant             X and W are those of every step
+    stiff                C or K is not zero: without them A^-1 has entries where M^-1 does, and A_q and A_v have none
     A_q : (n_q, n_q)     A^-1 h K
     A_v : (n_q, n_q)     A^-1 (h C + h^2 theta K)
     A_f : (n_q, n_q)     h A^-1
@@ -38,13 +39,13 @@ class Plan:
 
     Parameters
     ----------
-    h, theta, slack : float;  constant : bool;  matrices : dict of the five arrays, which are kept
+    h, theta, slack : float;  constant, stiff : bool;  matrices : dict of the five arrays, which are kept
     """
 
     def __init__(
-        self, h: float, theta: float, slack: float, constant: bool, matrices: dict[str, Any]
+        self, h: float, theta: float, slack: float, constant: bool, stiff: bool, matrices: dict[str, Any]
     ) -> None:
-        self.h, self.theta, self.slack, self.constant = h, theta, slack, constant
+        self.h, self.theta, self.slack, self.constant, self.stiff = h, theta, slack, constant, stiff
         self.matrices = {name: np.ascontiguousarray(matrices[name]) for name in MATRICES}
         self.A_q, self.A_v = doubles(self.matrices["A_q"]), doubles(self.matrices["A_v"])
         self.A_f = doubles(self.matrices["A_f"])

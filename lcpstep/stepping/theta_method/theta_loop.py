@@ -7,7 +7,7 @@ import cython
 from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, total_force
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import copy, finite, product
+from lcpstep.kernels.vectors import copy, finite, product, product_between
 from lcpstep.pointers import min
 from lcpstep.stepping.steps import LATE
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINITE
@@ -99,7 +99,7 @@ def measure(m: Model, s: State, c: Rows, t: float) -> None:
     gaps(m, t, s.q, s.v, s.g)
     if m.flat:  # the obstacle's velocity came with the gap
         for i in range(n_c):
-            s.u[i] = product(m.G, s.v, i, s.n_q) - m.motion_now[3 * i + 1]
+            s.u[i] = product_between(m.G, s.v, i, s.n_q, m.G_ends) - m.motion_now[3 * i + 1]
         return
     gap_rates(m, t, s.q, s.v, c.H, c.H_t)
     for i in range(n_c):

@@ -205,8 +205,10 @@ def free_velocity(m: Model, plan: Plan, s: State, t_next: float) -> None:
     external_force(m, t_next, s.q, s.v, s.next_force)
     s.forces += 1
     for i in range(n):
-        total = s.v[i]
-        for j in range(n):
+        total, low, high = s.v[i], 0, n
+        if not plan.stiff:
+            low, high = m.M_ends[2 * i], m.M_ends[2 * i + 1]
+        for j in range(low, high):
             k = i * n + j
             total += (
                 plan.A_f[k] * (theta * s.next_force[j] + (1.0 - theta) * s.force[j])
