@@ -151,8 +151,14 @@ def verlet(s: Strides, t: float, h: float) -> bool:
 
 
 def pull_back(s: Strides, h: float) -> None:
-    """Velocities and impulses that belong to how the position has been put back, from `dv`, but for its rounding."""
-    if distance(s.y_new, s.dv, s.n_q) > ROUNDING * largest(s.y_new, 0.0, s.n_q):
+    """Velocities and impulses that belong to how the position has been put back, from `dv`.
+
+    But for its rounding, and for gaps that were left before: how far the step itself has left the surfaces is a part
+    of the way h^2 a, and over a short step a gap within its tolerance would be any velocity.
+    """
+    off = distance(s.y_new, s.dv, s.n_q)
+    own = h * h * largest(after(s.K, s.n_q), 0.0, s.n_q)
+    if ROUNDING * largest(s.y_new, 0.0, s.n_q) < off <= own:
         for i in range(s.n_q):
             s.pull[i] = (s.y_new[i] - s.dv[i]) / h
         list_by_row(s.rows, s.rows.held, s.rows.near)
