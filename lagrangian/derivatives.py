@@ -129,8 +129,12 @@ class Look(NamedTuple):
 
 def _wrong(sides: list[Look], largest: Array) -> Truth:
     """(rows,) whether the derivative is wrong on every side, and matters."""
-    matters = np.min([side.steepness() for side in sides], axis=0) > NEGLIGIBLE * largest
-    return matters & np.array([all(s.certain(row) for s in sides) for row in range(len(largest))])
+    found = np.min([side.steepness() for side in sides], axis=0) > NEGLIGIBLE * largest
+    for side in sides:
+        found &= np.count_nonzero(side.wrong, axis=0) >= ENOUGH
+    for row in np.flatnonzero(found):
+        found[row] = all(s.certain(int(row)) for s in sides)
+    return found
 
 
 def _look(relation: Relation, d: Direction) -> list[Look]:

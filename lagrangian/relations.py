@@ -9,7 +9,7 @@ System                        force: force_q and force_v;   mass: its own transp
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from lagrangian import checks
 from lagrangian.checks import Array, Callback, read_only
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.derivatives import Direction, Known, Relation, State, compare
+from lagrangian.joints import Joints
 from lagrangian.plain import python
 from lagrangian.system import LinearSystem
 
@@ -28,15 +29,58 @@ MOST = 8  # directions among the coordinates; where there are more of these, sev
 APART = 0.01  # of the scale: from the state given to the one looked at, where products of coordinates do not vanish
 FASTER = 0.3  # of the scale: the same of the velocities
 LATER = 0.0274  # of half the span: the same of the time
+LARGE = 4096  # entries of a matrix
 GOLDEN = 0.6180339887498949
 KNOWN = Known()
 
 
-def check_derivatives(scene: Scene, states: Iterable[State], run: bool = False) -> None:
+class Asked(NamedTuple):
+    """A scene whose functions are evaluated, and by what: `prepared(f, scene, shape)` gives what fills in `out`."""
+
+    scene: Scene
+    prepared: Callable[[Callback, Scene, tuple[int, ...]], Callable[[float, Array, Array, Array], None]]
+
+    def evaluated(self, f: Callback | None, shape: tuple[int, ...]) -> Callable[[State], Array]:
+        """A callback as a function of the state: zero where there is none, not-a-number where it fails."""
+        if f is None:
+            return lambda x: np.zeros(shape)
+        fill = self.prepared(f, self.scene, shape)
+
+        def value(x: State) -> Array:
+            out = np.full(shape, np.nan)
+            try:
+                fill(*x, out)
+            except Exception:  # a state that the motion may never reach
+                out.fill(np.nan)
+            return out
+
+        return value
+
+
+def in_python(f: Callback, scene: Scene, _: tuple[int, ...]) -> Callable[[float, Array, Array, Array], None]:
+    """A callback that runs in Python alone."""
+    g, p = python(f), read_only(np.array(scene.p))
+    return lambda t, q, v, out: g(t, read_only(q), read_only(v), p, out)
+
+
+def is_large(scene: Scene) -> bool:
+    """Whether it takes Python a second to fill its matrices some hundred times: they wait for machine code."""
+    c, joints, system = scene.contacts, scene.joints, scene.system
+    rows = [scene.n_c if isinstance(c, Contacts) else 0]
+    rows += [scene.n_j if isinstance(joints, Joints) and joints.pattern is None else 0]
+    rows += [0 if isinstance(system, LinearSystem) else scene.n_q]
+    return scene.n_q * max(rows) > LARGE
+
+
+def check_derivatives(
+    scene: Scene, states: Iterable[State], run: bool = False, prepared: Any = in_python
+) -> None:
     """Compare every derivative that the scene's functions give; ValueError names the first that is wrong.
 
     Once for each set of functions and of parameters near the start of a scene, and once near states of a run: what is
     forgotten may be 1 in the first. Not for more than a few sets of parameters, for a study has thousands of them.
+
+    prepared : see `Asked`
     """
     functions = [f for f in _functions(scene) if f is not None]
     if not functions:
@@ -45,11 +89,12 @@ def check_derivatives(scene: Scene, states: Iterable[State], run: bool = False) 
     seen = KNOWN.of(functions).parameters.setdefault((scene.n_q, len(p), run), set())
     if p.tobytes() in seen or len(seen) >= ENOUGH:
         return
+    ask = Asked(scene, prepared)
     with np.errstate(all="ignore"):
         for at in states:
-            _check_mass(scene, at)
-            _check_arguments(scene, at)
-            for relation in _relations(scene, at):
+            _check_mass(ask, at)
+            _check_arguments(ask, at)
+            for relation in _relations(ask, at):
                 compare(relation)
     seen.add(p.tobytes())
 
@@ -71,23 +116,23 @@ def _functions(scene: Scene) -> list[Any]:
     return found
 
 
-def _check_mass(scene: Scene, at: State) -> None:
+def _check_mass(ask: Asked, at: State) -> None:
     """ValueError where the mass is not symmetric: kernels that read one half of it do not notice."""
-    mass: Any = getattr(scene.system, "mass", None)
+    mass: Any = getattr(ask.scene.system, "mass", None)
     if callable(mass):
-        M = _evaluated(mass, scene, (scene.n_q, scene.n_q))(at)
+        M = ask.evaluated(mass, (ask.scene.n_q, ask.scene.n_q))(at)
         if np.all(np.isfinite(M)):
             checks.symmetric_mass("system.mass", M)
 
 
-def _check_arguments(scene: Scene, at: State) -> None:
+def _check_arguments(ask: Asked, at: State) -> None:
     """ValueError where what moves by itself depends on the state, or a gap on velocities: no method asks for that."""
-    (t, q, _), (_, beside, faster) = at, _beside(scene, at, 0.0)
-    for name, f, shape in _moving(scene):
-        _check_same(name, "time", _evaluated(f, scene, shape), at, (t, beside, faster))
-    for name, c in _constraints(scene):
+    (t, q, _), (_, beside, faster) = at, _beside(ask, at, 0.0)
+    for name, f, shape in _moving(ask.scene):
+        _check_same(name, "time", ask.evaluated(f, shape), at, (t, beside, faster))
+    for name, c in _constraints(ask.scene):
         if not isinstance(c, LinearContacts):
-            gap = _evaluated(c.gap, scene, (c.n_c,))
+            gap = ask.evaluated(c.gap, (c.n_c,))
             _check_same(f"{name}.gap", "time and coordinates", gap, at, (t, q, faster))
 
 
@@ -118,52 +163,53 @@ def _constraints(scene: Scene) -> Iterator[tuple[str, Any]]:
         yield "joints", scene.joints.as_contacts()
 
 
-def _relations(scene: Scene, at: State) -> Iterator[Relation]:
+def _relations(ask: Asked, at: State) -> Iterator[Relation]:
     """Every relation of the scene's functions."""
+    scene = ask.scene
     system, duration = scene.system, 0.5 * min(scene.t_span[1] - scene.t_span[0], scene.period)
     if isinstance(system, LinearSystem):
         if system.frame is not None:
-            yield _chain("system.frame", system.frame, scene, scene.n_q, at, duration)
+            yield _chain("system.frame", system.frame, ask, scene.n_q, at, duration)
     elif system.force_q is not None or system.force_v is not None:
-        yield _force(scene, system, _beside(scene, at, LATER * duration))
+        yield _force(ask, system, _beside(ask, at, LATER * duration))
     for name, c in _constraints(scene):
         if not isinstance(c, LinearContacts):
-            yield _gap(name, c, scene, at, duration)
+            yield _gap(name, c, ask, at, duration)
             if c.bias is not None:
-                yield _bias(name, c, scene, _beside(scene, at, 0.0), duration)
+                yield _bias(name, c, ask, _beside(ask, at, 0.0), duration)
         elif c.motion is not None:
-            yield _chain(f"{name}.motion", c.motion, scene, c.n_c, at, duration)
+            yield _chain(f"{name}.motion", c.motion, ask, c.n_c, at, duration)
 
 
-def _chain(name: str, f: Callback, scene: Scene, n: int, at: State, duration: float) -> Relation:
+def _chain(name: str, f: Callback, ask: Asked, n: int, at: State, duration: float) -> Relation:
     """Rows (x, x', x'') of a function of time."""
-    motion = _evaluated(f, scene, (n, 3))
+    motion = ask.evaluated(f, (n, 3))
     names = lambda row: (f"{name}: out[{row // 2}, {row % 2 + 1}]", f"out[{row // 2}, {row % 2}]")  # noqa: E731
     return Relation(
         value=lambda x: motion(x)[:, :2].ravel(),
         slope=lambda x, along: along[0] * motion(x)[:, 1:].ravel(),
-        directions=[Direction(at, _ahead(scene, duration), duration, False, names)],
+        directions=[Direction(at, _ahead(ask.scene, duration), duration, False, names)],
     )
 
 
-def _gap(name: str, c: Any, scene: Scene, at: State, duration: float) -> Relation:
+def _gap(name: str, c: Any, ask: Asked, at: State, duration: float) -> Relation:
     """g with G and g_t."""
-    G, g_t = _jacobian(name, c, scene), _evaluated(c.gap_t, scene, (c.n_c,))
+    G, g_t = _jacobian(name, c, ask), ask.evaluated(c.gap_t, (c.n_c,))
     given = f"{name}.gap_t" + (" (not given)" if c.gap_t is None else "")
     names = lambda row: (f"{given}[{row}]", f"{name}.gap[{row}]")  # noqa: E731
-    in_time = Direction(_beside(scene, at, 0.0), _ahead(scene, duration), duration, False, names)
-    base = _beside(scene, at, LATER * duration)
+    in_time = Direction(_beside(ask, at, 0.0), _ahead(ask.scene, duration), duration, False, names)
+    base = _beside(ask, at, LATER * duration)
     return Relation(
-        value=_evaluated(c.gap, scene, (c.n_c,)),
+        value=ask.evaluated(c.gap, (c.n_c,)),
         slope=lambda x, along: along[0] * g_t(x) if along[0] else G(x) @ along[1],
         directions=[*_coordinates(base, 1, f"{name}.jacobian", f"{name}.gap"), in_time],
     )
 
 
-def _bias(name: str, c: Any, scene: Scene, base: State, duration: float) -> Relation:
+def _bias(name: str, c: Any, ask: Asked, base: State, duration: float) -> Relation:
     """G v + g_t with its derivative along the motion."""
-    G, g_t = _jacobian(name, c, scene), _evaluated(c.gap_t, scene, (c.n_c,))
-    bias, v = _evaluated(c.bias, scene, (c.n_c,)), base[2]
+    G, g_t = _jacobian(name, c, ask), ask.evaluated(c.gap_t, (c.n_c,))
+    bias, v = ask.evaluated(c.bias, (c.n_c,)), base[2]
     duration = min(duration, _size(base[1]) / _size(v))
     names = lambda row: (f"{name}.bias[{row}]", f"{name}.jacobian v + {name}.gap_t along the motion")  # noqa: E731
     return Relation(
@@ -173,24 +219,24 @@ def _bias(name: str, c: Any, scene: Scene, base: State, duration: float) -> Rela
     )
 
 
-def _jacobian(name: str, c: Any, scene: Scene) -> Callable[[State], Any]:
+def _jacobian(name: str, c: Any, ask: Asked) -> Callable[[State], Any]:
     """G of contacts or joints as a function of the state, sparse where it has a pattern."""
-    pattern = getattr(scene.joints, "pattern", None) if name == "joints" else None
+    pattern = getattr(ask.scene.joints, "pattern", None) if name == "joints" else None
     if pattern is None:
-        return _evaluated(c.jacobian, scene, (c.n_c, scene.n_q))
-    joints: Any = scene.joints
-    entries = _evaluated(joints.jacobian, scene, (pattern.shape[1],))
-    return lambda x: joints.matrix(entries(x), scene.n_q)
+        return ask.evaluated(c.jacobian, (c.n_c, ask.scene.n_q))
+    joints: Any = ask.scene.joints
+    entries = ask.evaluated(joints.jacobian, (pattern.shape[1],))
+    return lambda x: joints.matrix(entries(x), ask.scene.n_q)
 
 
-def _force(scene: Scene, system: Any, base: State) -> Relation:
+def _force(ask: Asked, system: Any, base: State) -> Relation:
     """f with df/dq and df/dv, those of them that are given."""
-    n = scene.n_q
-    f_q, f_v = _evaluated(system.force_q, scene, (n, n)), _evaluated(system.force_v, scene, (n, n))
+    n = ask.scene.n_q
+    f_q, f_v = ask.evaluated(system.force_q, (n, n)), ask.evaluated(system.force_v, (n, n))
     by_q = _coordinates(base, 1, "system.force_q", "system.force") if system.force_q is not None else []
     by_v = _coordinates(base, 2, "system.force_v", "system.force") if system.force_v is not None else []
     return Relation(
-        value=_evaluated(system.force, scene, (n,)),
+        value=ask.evaluated(system.force, (n,)),
         slope=lambda x, along: f_q(x) @ along[1] if np.any(along[1]) else f_v(x) @ along[2],
         directions=[*by_q, *by_v],
     )
@@ -215,31 +261,14 @@ def _ahead(scene: Scene, duration: float) -> State:
     return duration, np.zeros(scene.n_q), np.zeros(scene.n_q)
 
 
-def _evaluated(f: Callback | None, scene: Scene, shape: tuple[int, ...]) -> Callable[[State], Array]:
-    """A callback as a function of the state: zero where there is none, not-a-number where it fails."""
-    if f is None:
-        return lambda x: np.zeros(shape)
-    g, p = python(f), read_only(np.array(scene.p))
-
-    def value(x: State) -> Array:
-        out = np.full(shape, np.nan)
-        try:
-            g(x[0], read_only(x[1]), read_only(x[2]), p, out)
-        except Exception:  # a state that the motion may never reach
-            out.fill(np.nan)
-        return out
-
-    return value
-
-
-def _beside(scene: Scene, at: State, later: float) -> State:
+def _beside(ask: Asked, at: State, later: float) -> State:
     """A state near another, no deeper inside obstacles than needed, at which nothing vanishes by chance."""
-    k = np.arange(scene.n_q)
+    k = np.arange(ask.scene.n_q)
     off = np.where(k % 2, -0.5, 0.5) * (1.0 + GOLDEN * (k + 1) % 1.0)
     t, q, v = at[0] + later, at[1], at[2] + FASTER * _size(at[2]) * off
     sides = [q + APART * _size(q) * sign * off for sign in (1.0, -1.0)]
-    if isinstance(scene.contacts, Contacts):
-        gap = _evaluated(scene.contacts.gap, scene, (scene.n_c,))
+    if isinstance(ask.scene.contacts, Contacts):
+        gap = ask.evaluated(ask.scene.contacts.gap, (ask.scene.n_c,))
         sides.sort(key=lambda x: -float(np.min(gap((t, x, v)))))
     return t, sides[0], v
 

@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Contacts, Harmonic, LinearContacts, Scene, System, checks
+from lagrangian import Contacts, Harmonic, LinearContacts, Scene, System
 from lcpstep.faults import cause, forget
+from lcpstep.prepared import evaluate
 from lcpstep.trajectory import Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -113,14 +114,14 @@ def _shallow(run: Trajectory, share: float) -> bool:
 def gaps(scene: Scene, states: list[tuple[float, Array, Array]]) -> Array:
     """Gaps (states, n_c) at states (t, q, v)."""
     contacts: Any = scene.contacts
-    p, n_c = np.array(scene.p), scene.n_c
+    n_c = scene.n_c
     if not isinstance(contacts, LinearContacts):
-        return np.array([checks.evaluate("contacts.gap", contacts.gap, (*x, p), (n_c,)) for x in states])
+        return np.array([evaluate("contacts.gap", contacts.gap, scene, x, (n_c,)) for x in states])
     G: Any = contacts.G
     g = np.asarray((G @ np.array([q for _, q, _ in states]).T).T + np.asarray(contacts.offset))
     if contacts.motion is not None:
         for k, x in enumerate(states):
-            g[k] -= checks.evaluate("contacts.motion", contacts.motion, (*x, p), (n_c, 3))[:, 0]
+            g[k] -= evaluate("contacts.motion", contacts.motion, scene, x, (n_c, 3))[:, 0]
     return g
 
 
@@ -131,14 +132,14 @@ def normal(scene: Scene, c: int, at: tuple[float, Array, Array]) -> Array:
         G: Any = contacts.G
         return np.asarray(G[[c]].toarray() if contacts.sparse else G[c], dtype=float).ravel()
     shape = (scene.n_c, scene.n_q)
-    return checks.evaluate("contacts.jacobian", contacts.jacobian, (*at, np.array(scene.p)), shape)[c]
+    return evaluate("contacts.jacobian", contacts.jacobian, scene, at, shape)[c]
 
 
 def mass(scene: Scene, t: float, q: Array, v: Array) -> Any:
     """The mass matrix at a state, sparse where the scene's is."""
     M: Any = scene.system.mass if isinstance(scene.system, System) else scene.system.M
     shape = (scene.n_q, scene.n_q)
-    return checks.evaluate("system.mass", M, (t, q, v, np.array(scene.p)), shape) if callable(M) else M
+    return evaluate("system.mass", M, scene, (t, q, v), shape) if callable(M) else M
 
 
 def largest_energy(run: Trajectory) -> float:
@@ -180,10 +181,10 @@ def _acceleration(scene: Scene, states: list[tuple[float, Array, Array]]) -> tup
 
 def _accelerated(scene: Scene, t: float, q: Array, v: Array) -> tuple[Array, Array]:
     """The same at one state, where forces of a linear system do not cancel each other."""
-    system, at, shape = scene.system, (t, q, v, np.array(scene.p)), (scene.n_q,)
+    system, at, shape = scene.system, (t, q, v), (scene.n_q,)
     M = mass(scene, t, q, v)
     if isinstance(system, System):
-        f = checks.evaluate("system.force", system.force, at, shape)
+        f = evaluate("system.force", system.force, scene, at, shape)
     else:
         matrices: Any = system.C, system.K
         C, K = matrices
@@ -191,10 +192,10 @@ def _accelerated(scene: Scene, t: float, q: Array, v: Array) -> tuple[Array, Arr
             f = np.sum(np.abs(system.force.terms(scene.n_q)), axis=0)
         else:
             given: Any = system.force
-            f = checks.evaluate("system.force", given, at, shape)
+            f = evaluate("system.force", given, scene, at, shape)
         f = np.abs(f) + np.abs(C @ v) + np.abs(K @ q)
         if system.frame is not None:
-            c = checks.evaluate("system.frame", system.frame, at, (scene.n_q, 3))
+            c = evaluate("system.frame", system.frame, scene, at, (scene.n_q, 3))
             f += np.abs(K @ c[:, 0]) + np.abs(C @ c[:, 1]) + np.abs(M @ c[:, 2])
     masses = np.asarray(M.diagonal(), dtype=float)
     return np.abs(f) / masses, masses

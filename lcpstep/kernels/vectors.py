@@ -44,6 +44,24 @@ def product_between(G: Doubles, v: Doubles, c: int, n: int, ends: Indices) -> fl
     return total
 
 
+def filled(x: Doubles, n: int, places: Indices) -> int:
+    """How many entries of x are not zero, and where they are."""
+    n_k = 0
+    for j in range(n):
+        if x[j] != 0.0:
+            places[n_k] = j
+            n_k += 1
+    return n_k
+
+
+def product_at(G: Doubles, v: Doubles, c: int, n: int, places: Indices, n_k: int) -> float:
+    """(G v)_c, all entries of v but these being zero."""
+    total = 0.0
+    for k in range(n_k):
+        total += G[c * n + places[k]] * v[places[k]]
+    return total
+
+
 def size_of_product(G: Doubles, v: Doubles, c: int, n: int) -> float:
     """Size of the terms of (G v)_c, their signs left aside."""
     size = 0.0

@@ -9,7 +9,7 @@ import pytest
 from lagrangian import Contacts, Joints, LinearContacts, LinearSystem, Scene, System
 from lagrangian.profiles import rotating_cam
 from lagrangian.scenes.cam_follower import HALF_TURN, PROFILE
-from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
+from lcpstep import EventDriven, Located, Moreau, SimulationError, Status, simulate
 
 TWO = LinearSystem(M=np.eye(2))
 
@@ -166,6 +166,42 @@ def test_a_derivative_that_is_wrong_later_is_found_by_the_run(method):
     with pytest.raises(SimulationError, match=r"^contacts\.jacobian\[0, 0\] is .* give ") as caught:
         simulate(made(Contacts(1, slope, jacobian), q0=(0.0, 1.0), v0=(5.0, 0.0)), method)
     assert caught.value.trajectory.t[-1] == 2.0
+
+
+def many(n, wrong, calls):
+    """So many coordinates, each above its own bowl."""
+
+    def gap(t, q, v, p, out):
+        for i in range(len(q)):
+            out[i] = q[i] + 1.0 + 0.1 * q[i] ** 2
+
+    def jacobian(t, q, v, p, out):
+        out[:] = 0.0
+        for i in range(len(q)):
+            out[i, i] = 1.0 + (0.2 if i != wrong else 0.9) * q[i]
+
+    def counted(*arguments):
+        calls.append(None)
+        jacobian(*arguments)
+
+    contacts = Contacts(n, gap, counted if calls else jacobian)
+    return Scene(
+        LinearSystem(np.eye(n), force=-np.ones(n)), np.full(n, 0.5), np.zeros(n), (0.0, 0.1), contacts
+    )
+
+
+@pytest.mark.parametrize("n", [60, 70])
+def test_wrong_derivatives_are_named_before_a_run_however_many_there_are(n):
+    with pytest.raises(ValueError, match=r"^contacts\.jacobian\[41, 41\] is .* differences of .* give "):
+        simulate(many(n, 41, []), Moreau(1e-2))
+    assert simulate(many(n, None, []), Moreau(1e-2)).status == Status.DONE
+
+
+def test_large_jacobians_are_not_filled_in_python_some_hundred_times():
+    """A second and more went by, for 50 discs on a table a minute."""
+    calls = [None]
+    many(70, None, calls)
+    assert len(calls) < 5
 
 
 def test_what_has_been_looked_at_is_not_looked_at_again():

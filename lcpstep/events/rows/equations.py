@@ -14,7 +14,7 @@ from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import divide_by_mass, response
 from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import copy, product
+from lcpstep.kernels.vectors import copy, filled, product_at
 from lcpstep.pointers import Doubles, abs, after, min
 
 JUMPS = 1e-9  # of velocities: a rate of a gap that changes by less at a corner does so by rounding
@@ -117,8 +117,9 @@ def respond_held(s: Rows) -> None:
 
 
 def couple(s: Rows, i: int, j: int) -> None:
-    """Entries i, j of the Delassus matrix, by what an impulse on row i does."""
-    s.D[i * s.n_r + j] = s.D[j * s.n_r + i] = product(s.R, after(s.MR, i * s.n_q), j, s.n_q)
+    """Entries i, j of the Delassus matrix, by what an impulse on row i does, that `respond_to` has just found."""
+    does = after(s.MR, i * s.n_q)
+    s.D[i * s.n_r + j] = s.D[j * s.n_r + i] = product_at(s.R, does, j, s.n_q, s.moved, s.n_moved)
 
 
 def other(s: Rows, i: int) -> int:
@@ -129,6 +130,7 @@ def other(s: Rows, i: int) -> int:
 def respond_to(s: Rows, i: int) -> None:
     """What an impulse on row i does."""
     response(s.model, s.M, s.work, after(s.R, i * s.n_q), after(s.MR, i * s.n_q))
+    s.n_moved = filled(after(s.MR, i * s.n_q), s.n_q, s.moved)
 
 
 def size_of(s: Rows, i: int, constant: float, x: Doubles) -> float:

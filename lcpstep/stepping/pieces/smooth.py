@@ -18,7 +18,7 @@ from lcpstep.kernels.acceleration import factor_mass, response
 from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, total_force
 from lcpstep.kernels.linear import grow_factor, invert_matrix, solve_factored
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import add, copy, product, product_between
+from lcpstep.kernels.vectors import add, copy, filled, product, product_at, product_between
 from lcpstep.pointers import Doubles, abs, after, max, min
 from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
 from lcpstep.stepping.pieces.state import Plan, Work
@@ -112,9 +112,9 @@ def respond(m: Model, w: Work) -> None:
     """M^-1 G^T and the Delassus matrix at the Jacobian w.G."""
     for c in range(w.n_c):
         mobility(m, w, c)
-    for c in range(w.n_c):
+        n_k = filled(after(w.MG, c * w.n_q), w.n_q, w.moved)
         for d in range(w.n_c):
-            w.W[d * w.n_c + c] = product(w.G, after(w.MG, c * w.n_q), d, w.n_q)
+            w.W[d * w.n_c + c] = product_at(w.G, after(w.MG, c * w.n_q), d, w.n_q, w.moved, n_k)
 
 
 def refactor(m: Model, w: Work, t: float) -> bool:

@@ -121,6 +121,7 @@ class Work:
     G, G_try, MG : (n_c, n_q)   gap Jacobian, one to try, (M^-1 G^T)^T
     W : (n_c, n_c)              G M^-1 G^T
     M : (n_q, n_q)              factor of a mass matrix that changes
+    moved : (n_q,)   coordinates that an impulse moves
     problem : (n_c, n_c);  pivots : (n_c + 1,);  lcp     work space of complementarity problems
     bracket         in which a root is sought;  sudden   in which a jump is
 
@@ -172,9 +173,10 @@ class Work:
         self.seen |= {"q": self.numbers[:n_q], "v": self.numbers[n_q : 2 * n_q]}
         self.seen["impulse"] = self.numbers[VECTORS * n_q :][:n_c]
         self.matrices = np.zeros(3 * n_c * n_q + n_q * n_q + 2 * n_c * n_c)
-        self.places = np.zeros(n_c + 1, dtype=np.intp)
+        self.places = np.zeros(n_c + 1 + n_q, dtype=np.intp)
         self.lcp, self.pivots, self.bracket = Workspace(n_c), indices(self.places), Bracket()
         self.sudden, self.jump, self.margin, self.doubtful = Sudden(), -inf, 0.0, False
+        self.moved = indices_after(self.pivots, n_c + 1)
         self.place_vectors(doubles(self.numbers))
         self.place_numbers(after(doubles(self.numbers), VECTORS * n_q))
         self.place_marks(indices(self.marks))
