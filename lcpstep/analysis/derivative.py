@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lcpstep.lengths import derivative as over_lengths
+from lcpstep.lengths import lengths
 from lcpstep.maps.iteration import Map, iterate
 
 Array = NDArray[np.float64]
@@ -29,19 +30,30 @@ def derivative(P: Map, x: ArrayLike) -> Array:
     own = getattr(P, "jacobian", None)
     if own is not None:
         return np.atleast_2d(np.asarray(own(np.asarray(x, dtype=float)), dtype=float))
-    return differences(P, x)
+    return along(P, x, 1)[1][0]
 
 
-def along(P: Map, x: ArrayLike, n: int, drop: int = 0) -> tuple[Array, Array]:
+def _lengths(P: Map, points: Array, size: float) -> Array:
+    """Lengths over which a map is smooth along an orbit, (d,)."""
+    size = max(size, float(np.max(np.abs(points))))
+    at = points[np.argsort(np.max(np.abs(points), axis=1))[len(points) // 2]]
+    return lengths(P, at, RELATIVE_STEP, np.full(points.shape[1], size if size > 0.0 else 1.0))
+
+
+def along(P: Map, x: ArrayLike, n: int, drop: int = 0, *, size: float = 0.0) -> tuple[Array, Array]:
     """Images of the n iterations after the first `drop`, (n, d), and the derivative of each, (n, d, d).
 
-    By the map itself where it knows them all at once.
+    By the map itself where it knows them all at once; else by differences over lengths on which it is smooth.
+    size : of the points, at the least, where these may lie much nearer to zero than the map is wide
     """
     own = getattr(P, "along", None)
     if own is not None:
         images, derivatives = own(x, n, drop)
         return images, derivatives
     points = iterate(P, x, drop + n)[drop:]
+    if n and getattr(P, "jacobian", None) is None:
+        scale = _lengths(P, points, size)
+        return points[1:], np.array([differences(P, y, scale=scale) for y in points[:-1]])
     return points[1:], np.array([derivative(P, y) for y in points[:-1]])
 
 

@@ -12,6 +12,7 @@ from lcpstep.analysis.fixed_points import image_and_derivative, multipliers
 from lcpstep.analysis.grid_error import finer_method
 from lcpstep.analysis.lyapunov import Lyapunov, growth_of_runs, lyapunov
 from lcpstep.analysis.variation import PeriodMap
+from lcpstep.errors import LcpStepError, SimulationError
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import Periods
 
@@ -30,9 +31,16 @@ def exponent(P: PeriodMap, sample: Periods, x: Array, n: int) -> Lyapunov:
             return Lyapunov(
                 math.nan, math.nan, reason="differences across the impacts of time-stepping say nothing"
             )
-        if not n:
-            return lyapunov(P, x, LYAPUNOV_PERIODS)
-        return _of_multipliers(image_and_derivative(P, x, n)[1], n)
+        try:
+            return (
+                _of_multipliers(image_and_derivative(P, x, n)[1], n)
+                if n
+                else lyapunov(P, x, LYAPUNOV_PERIODS)
+            )
+        except SimulationError:
+            raise
+        except LcpStepError as error:  # an attractor is one, whether its motion has a derivative or not
+            return Lyapunov(math.nan, math.nan, reason=str(error))
     if n and isinstance(P.method, EventDriven):
         J = np.eye(len(x))
         for factor in sample.tangents[0]:

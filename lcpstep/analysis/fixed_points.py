@@ -21,6 +21,10 @@ Array = NDArray[np.float64]
 MAX_ITERATIONS = 30
 HALVINGS = 8  # of a Newton step that does not come closer
 CONVERGED = 1e-11  # residual, relative to the size of the point
+ROUNDED, CONTRACTION = (
+    1e-15,
+    0.5,
+)  # residual that rounding leaves; what it shrinks to while there are digits to gain
 STAGNATED = 1e-8  # a residual that rounding keeps from becoming smaller is accepted below this
 FAR = 1e3  # of the size of the guess: how much larger a point near it may be
 
@@ -76,16 +80,21 @@ def periodic_point(P: Map, x: ArrayLike, n: int = 1) -> PeriodicPoint:
     checks.function("P", P, "a state, a map")
     n = checks.count("n", n)
     x = np.array(checks.vector("x", x))
-    F, J = _residual(P, x, n)
-    size = guessed = max(float(np.max(np.abs(x))), float(np.max(np.abs(F + x))))  # the point may be zero
+    size = float(np.max(np.abs(x)))
+    F, J = _residual(P, x, n, size)
+    # That of the guess, for the point may be zero. Its image tells nothing where it is no point that comes back
+    size = guessed = size or float(np.max(np.abs(F)))
     for _ in range(MAX_ITERATIONS):
         # Where all drifts steadily, steps lead away without end, and no residual is large beside such points
-        size = min(max(size, float(np.max(np.abs(x))), float(np.max(np.abs(F + x)))), FAR * guessed)
+        size = min(max(size, float(np.max(np.abs(x)))), FAR * guessed)
         error = float(np.max(np.abs(F)))
-        if error <= CONVERGED * size:
+        if error <= ROUNDED * size:
             break
         step: Array = np.linalg.lstsq(J - np.eye(len(x)), -F, rcond=None)[0].astype(float)
-        better = _shortened(P, x, F, step, n)
+        better = _shortened(P, x, F, step, n, size)
+        # A point far from zero, or where multipliers are nearly one, has more digits to give than its residual says
+        if error <= CONVERGED * size and (better is None or np.max(np.abs(better[1])) > CONTRACTION * error):
+            break
         if better is None:
             if error <= STAGNATED * size:
                 break
@@ -99,9 +108,9 @@ def periodic_point(P: Map, x: ArrayLike, n: int = 1) -> PeriodicPoint:
     return PeriodicPoint(iterate(P, x, n)[:n], multipliers(J), float(np.max(np.abs(F))))
 
 
-def image_and_derivative(P: Map, x: Array, n: int) -> tuple[Array, Array]:
-    """P^n(x), and DP^n(x) by the chain rule along the orbit."""
-    images, derivatives = along(P, x, n)
+def image_and_derivative(P: Map, x: Array, n: int, size: float = 0.0) -> tuple[Array, Array]:
+    """P^n(x), and DP^n(x) by the chain rule along the orbit; size : see `along`."""
+    images, derivatives = along(P, x, n, size=size)
     J = np.eye(len(x))
     for factor in derivatives:
         J = factor @ J
@@ -114,12 +123,14 @@ def multipliers(J: Array) -> NDArray[np.complex128]:
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
-def _residual(P: Map, x: Array, n: int) -> tuple[Array, Array]:
-    image, J = image_and_derivative(P, x, n)
+def _residual(P: Map, x: Array, n: int, size: float) -> tuple[Array, Array]:
+    image, J = image_and_derivative(P, x, n, size)
     return image - x, J
 
 
-def _shortened(P: Map, x: Array, F: Array, step: Array, n: int) -> tuple[Array, Array, Array] | None:
+def _shortened(
+    P: Map, x: Array, F: Array, step: Array, n: int, size: float
+) -> tuple[Array, Array, Array] | None:
     """The Newton step, halved until it brings the residual down; None where it never does."""
     for k in range(HALVINGS):
         trial = x + 0.5**k * step
@@ -128,5 +139,5 @@ def _shortened(P: Map, x: Array, F: Array, step: Array, n: int) -> tuple[Array, 
         except (ValueError, LcpStepError):  # outside of where the map is defined
             continue
         if np.max(np.abs(moved[-1] - trial)) < np.max(np.abs(F)):
-            return trial, moved[-1] - trial, image_and_derivative(P, trial, n)[1]
+            return trial, *_residual(P, trial, n, size)
     return None

@@ -34,7 +34,7 @@ from lcpstep.sweep import Arrays, sweep
 Array = NDArray[np.float64]
 BOUND = 1e6  # of an orbit that has not escaped, in units of 1 + |x0|
 PART = 16  # values of a part of the sweep
-SAME = 1e-7  # distance of two periodic points that are one, relative to their size
+SAME = 1e-7  # distance of two periodic points that are one, relative to the size of their orbits
 TAKEN = {"x", "lyapunov", "lyapunov_error", "iteration", "state"}  # names in the dataset
 STARTS = ("fixed", "forward", "backward")
 
@@ -89,7 +89,7 @@ def periodic_points(
             point = periodic_point(P, x, n)
         except (NotConverged, LcpStepError, ValueError, ArithmeticError):
             continue
-        size = SAME * (1.0 + float(np.max(np.abs(point.points))))
+        size = SAME * max(float(np.max(np.abs(point.points))), float(np.max(np.abs(box))))
         less = any(n % k == 0 and _near(point.points[0], point.points[k], size) for k in range(1, n))
         if not less and not any(_near(point.points[0], y, size) for other in found for y in other.points):
             found.append(point)

@@ -203,7 +203,7 @@ class Follower:
 
     def equations(self, z: Array) -> tuple[Array, Array]:
         """F and DP^n at z."""
-        image, J = image_and_derivative(self.family(float(z[-1])), z[:-1], self.n)
+        image, J = image_and_derivative(self.family(float(z[-1])), z[:-1], self.n, self.size(z))
         return image - z[:-1], J
 
     def slope(self, z: Array) -> Array:

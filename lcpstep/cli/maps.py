@@ -165,7 +165,7 @@ def _box(options: argparse.Namespace, orbit: Any) -> Any:
     """Lowest and highest point of the box in which periodic points are looked for."""
     d = orbit.shape[1]
     if options.box is None:
-        size = np.maximum(np.ptp(orbit, axis=0), 1.0)
+        size = np.maximum(np.ptp(orbit, axis=0), float(np.max(np.abs(orbit))) or 1.0)
         return np.stack([np.min(orbit, axis=0) - MARGIN * size, np.max(orbit, axis=0) + MARGIN * size])
     if len(options.box) != 2 * d:
         raise ValueError(f"--box: expected {2 * d} numbers, lowest and highest point, got {len(options.box)}")

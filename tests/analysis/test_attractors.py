@@ -2,11 +2,14 @@
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
 from lagrangian.scenes import ball_on_table, cam_follower, driven_bilinear_oscillator
+from lagrangian.scenes.table import sine_table
 from lcpstep import EventDriven, Moreau
 from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.bifurcation import bifurcation
@@ -198,3 +201,30 @@ def test_an_impact_on_the_section_is_told_from_a_long_transient():
     moved = attractors(scene, EventDriven(), starts, phase=0.3).found
     assert "O(1, 1)" in [a.name for a in moved]
     assert next(a for a in moved if a.name == "O(1, 1)").lyapunov.largest == pytest.approx(np.log(0.5))
+
+
+def test_a_motion_without_a_derivative_is_an_attractor_all_the_same():
+    """A bar that falls flat on a shaken table: both feet strike together, and it does as a ball does."""
+    omega, period = 35.0, 2.0 * math.pi / 35.0
+    bar = Scene(
+        LinearSystem(M=[[1.0, 0.0], [0.0, 1.0 / 3.0]], force=Harmonic(constant=[-9.81, 0.0])),
+        q0=[0.02, 0.0], v0=[0.0, 0.0], t_span=(0.0, 1.0), p=[0.01, omega, 0.0], period=period,
+        contacts=LinearContacts(G=[[1.0, 1.0], [1.0, -1.0]], restitution=0.2, motion=two_tables),
+    )  # fmt: skip
+    (found,) = attractors(
+        bar, EventDriven(), [[0.02, 0.0, 0.0, 0.0]], transient=100, window=40, longest=10
+    ).found
+    ball = replace(
+        bar, system=LinearSystem(M=1.0, force=Harmonic(constant=-9.81)), q0=0.02, v0=0.0,
+        contacts=LinearContacts(G=1.0, restitution=0.2, motion=sine_table),
+    )  # fmt: skip
+    (one,) = attractors(ball, EventDriven(), [[0.02, 0.0]], transient=100, window=40, longest=10).found
+    assert found.name == one.name
+    assert found.points[:, [0, 2]] == pytest.approx(one.points, abs=1e-9)
+    assert math.isnan(found.lyapunov.largest)
+    assert "strike together" in found.lyapunov.reason
+
+
+def two_tables(t, q, v, p, out):
+    sine_table(t, q, v, p, out)
+    out[1, 0], out[1, 1], out[1, 2] = out[0, 0], out[0, 1], out[0, 2]

@@ -201,3 +201,26 @@ def test_the_derivative_of_the_grazing_map_is_that_of_its_differences():
     P = GRAZING.at(alpha=0.4, gamma=0.3, tau=0.7, rho=0.1)
     for x in ([0.5, -0.2], [-0.3, 0.4], [2.0, 1.0]):
         np.testing.assert_allclose(P.jacobian(np.array(x)), differences(P, x), atol=1e-9)
+
+
+# --- maps of ones own
+
+
+@pytest.mark.parametrize(("n", "known"), [(1, 2), (2, 1), (3, 0), (4, 1), (5, 0), (6, 2), (7, 4)])
+def test_the_map_of_henon_has_as_many_cycles_as_are_known(n, known):
+    """O. Biham, W. Wenzel, Physical Review Letters 63 (1989): all cycles at a = 1.4, b = 0.3."""
+
+    def henon(x):
+        return np.array([1.0 - 1.4 * x[0] ** 2 + x[1], 0.3 * x[0]])
+
+    with np.errstate(over="ignore", invalid="ignore"):  # steps may lead far away
+        found = periodic_points(henon, [[-2.0, -0.7], [2.0, 0.7]], n, starts=400)
+    assert len(found) == known
+    for point in found:
+        assert henon(point.points[-1]) == pytest.approx(point.points[0], abs=1e-12)
+
+
+def test_where_two_cycles_are_born_one_is_found_not_many_beside_it():
+    found = periodic_points(LOGISTIC.at(r=1.0 + math.sqrt(8.0)), [[0.0], [1.0]], 3)
+    assert len(found) == 1
+    assert found[0].multipliers[0] == pytest.approx(1.0, abs=1e-5)  # half of the digits: it is a double root

@@ -19,6 +19,8 @@ from lagrangian import (
     System,
 )
 from lcpstep import EventDriven
+from lcpstep.analysis.lyapunov import lyapunov
+from lcpstep.analysis.map_diagram import periodic_points
 from lcpstep.analysis.orbits import periodic_orbit
 from lcpstep.analysis.variation import PeriodMap
 
@@ -97,3 +99,16 @@ def test_the_derivative_of_a_motion_with_modes_does_not_depend_on_it_either():
         assert P.follow(x, 1).impacts[0, 0] > 0
         found.append(P.jacobian(x))
     assert found[1:] == [pytest.approx(found[0], abs=1e-8)] * 2
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_a_map_without_a_derivative_is_differenced_over_its_own_length(unit):
+    def sine(x):
+        return np.array([0.95 * unit * math.sin(math.pi * x[0] / unit)])
+
+    (cycle,) = periodic_points(sine, [[0.0], [unit]], 1, starts=20)[1:]
+    slope = 0.95 * math.pi * math.cos(math.pi * cycle.points[0, 0] / unit)
+    assert cycle.points[0] == pytest.approx(sine(cycle.points[0]), rel=1e-14)
+    assert cycle.multipliers[0].real == pytest.approx(slope, abs=1e-9)
+    one = lyapunov(lambda x: sine(unit * x) / unit, [0.3], 30)
+    assert lyapunov(sine, [0.3 * unit], 30).largest == pytest.approx(one.largest, abs=1e-6)
