@@ -71,7 +71,8 @@ class Attractors:
     ----------
     found : the attractors, the one with the largest share first
     starts : (s, 2 n_q)   where the runs started
-    label : (s,)   number of the attractor each run went to; -1 for runs that ended early or started inside
+    label : (s,)   number of the attractor each run went to; -1 for runs that ended early, started inside, or
+        grow without bound
     settings : what they were looked for with
     """
 

@@ -25,7 +25,7 @@ from lcpstep.analysis.attractor import Attractors as Attractors
 from lcpstep.analysis.grid_error import APART, spread, wandered
 from lcpstep.analysis.grouping import Settled, grouped, near, overlap
 from lcpstep.analysis.returns import TOLERANCE as TOLERANCE
-from lcpstep.analysis.returns import periods_to_settle, return_time, return_times, survive
+from lcpstep.analysis.returns import periods_to_settle, return_time, return_times, run_away, survive
 from lcpstep.analysis.sampled import POINTS as POINTS
 from lcpstep.analysis.sampled import STARTS, described
 from lcpstep.analysis.starts import random_starts as random_starts
@@ -79,7 +79,8 @@ def attractors(
     runs = periods(
         scene, method, starts, transient + window, drop=transient, phase=phase, most=0, strict=True
     )
-    done = np.flatnonzero(runs.status == Status.DONE)
+    first = np.array(starts, dtype=float, ndmin=2)
+    done = np.flatnonzero((runs.status == Status.DONE) & ~run_away(runs.states, first))
     settled = _settled(scene, method, runs, done, longest, phase, tolerance, transient)
     groups = sorted(grouped(settled), key=len, reverse=True)
     label = np.full(len(runs.status), -1)
@@ -97,7 +98,6 @@ def attractors(
         "transient": transient, "window": window, "longest": longest, "phase": phase,
         "tolerance": TOLERANCE if tolerance is None else tolerance,
     }  # fmt: skip
-    first = np.array(starts, dtype=float, ndmin=2)
     return Attractors(tuple(found), first, label, settings)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -68,3 +68,13 @@ class Steps:
         for name in ("first", "smallest", "largest"):
             checks.positive(name, getattr(self, name))
         checks.count("points", self.points)
+
+
+@dataclass
+class State:
+    """A point of the branch with all that is known there."""
+
+    z: Array
+    J: Array
+    slope: Array  # dF/dp
+    tests: dict[str, float] = field(default_factory=dict)

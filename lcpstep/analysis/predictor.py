@@ -1,4 +1,4 @@
-"""Following a branch: predictor along the tangent, corrector in the hyperplane across it, and special points between.
+"""Following a branch: predictor along the tangent, corrector in the hyperplane across it.
 
     F(x, p) = P_p^n(x) - x = 0,      tau . (z - z_predicted) = 0,      z = (x, p)
 
@@ -8,14 +8,14 @@ Source: Yu. Kuznetsov, Elements of Applied Bifurcation Theory (Springer 2004), s
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.analysis.branch import Branch, Special, Steps
+from lcpstep.analysis.branch import Branch, Special, State, Steps
 from lcpstep.analysis.derivative import STENCIL
 from lcpstep.analysis.fixed_points import image_and_derivative, multipliers
+from lcpstep.analysis.special_points import between
 from lcpstep.errors import LcpStepError
 from lcpstep.maps.iteration import Map, iterate
 
@@ -38,19 +38,6 @@ NEAREST = (
     1e-9  # the same where the branch is hard to follow: near grazing, longer differences see other motions
 )
 SPOILT = 10.0  # of such steps: a motion of another kind within that spoils it
-ROOT = 1e-13  # of a step, where a bifurcation is located
-KINDS = ("fold", "branch point", "flip", "torus", "jump")
-SMALL = 1e-4  # a test function this small at its sign change, relative to the ends, is zero there and no jump
-
-
-@dataclass
-class State:
-    """A point of the branch with all that is known there."""
-
-    z: Array
-    J: Array
-    slope: Array  # dF/dp
-    tests: dict[str, float] = field(default_factory=dict)
 
 
 class Follower:
@@ -167,7 +154,7 @@ class Follower:
             if found is None:
                 return None
             moved = float(np.linalg.norm((found.z - state.z) / self.scale))
-            if moved > 3.0 * ds or self.differ(state.z, found.z):  # caught by another branch
+            if moved > 3.0 * abs(ds) or self.differ(state.z, found.z):  # caught by another branch
                 return None
             return self.with_tests(found), effort
         except (ValueError, LcpStepError):
@@ -237,55 +224,3 @@ class Follower:
 def extended(J: Array, slope: Array) -> Array:
     """(F_x, F_p), (d, d + 1)."""
     return np.column_stack([J - np.eye(len(J)), slope])
-
-
-def between(follower: Follower, state: State, end: State, tangent: Array, ds: float) -> list[Special]:
-    """Special points within a step of length ds along the tangent, in their order."""
-    found: list[tuple[float, Special]] = []
-    for name, value in state.tests.items():
-        other = end.tests.get(name)
-        if other is not None and value * other < 0.0:
-            place = _located(follower, state, end, tangent, ds, name)
-            found += [] if place is None else [place]
-    watched = [special for _, special in found if special.kind not in KINDS]
-    # Where the branch has a kink it cannot be followed to the jump itself; but what makes it jump is located
-    found = [
-        (s, x._replace(p=watched[0].p, x=watched[0].x))
-        if x.kind == "jump" and s == 1.0 and watched
-        else (s, x)
-        for s, x in found
-    ]
-    return [special for _, special in sorted(found, key=lambda pair: pair[0])]
-
-
-def _located(
-    follower: Follower, state: State, end: State, tangent: Array, ds: float, name: str
-) -> tuple[float, Special] | None:
-    """Where one test function changes its sign, as a share of the step, and what is there; None for nothing."""
-    from scipy.optimize import brentq
-
-    at: dict[float, State] = {0.0: state, 1.0: end}
-
-    def test(s: float) -> float:
-        if s not in at:
-            point = follower.step(state, tangent, s * ds)
-            if point is None or name not in point[0].tests:
-                raise LcpStepError("lost")
-            at[s] = point[0]
-        return at[s].tests[name]
-
-    try:
-        s = brentq(test, 0.0, 1.0, xtol=ROOT, rtol=1e-15)
-    except LcpStepError:  # the branch has a kink in between, sharper than the hyperplane can follow
-        return None if name.startswith(" ") else (1.0, _special("jump", end))
-    jumps = abs(test(s)) > SMALL * max(abs(state.tests[name]), abs(end.tests[name]))
-    if jumps and name.startswith(" "):  # a monitored number that jumps does not pass zero
-        return None
-    kind = "jump" if jumps else name.strip()
-    if kind == "fold" and follower.tangent(state, tangent)[-1] * follower.tangent(end, tangent)[-1] > 0.0:
-        kind = "branch point"
-    return s, _special(kind, at[s])
-
-
-def _special(kind: str, at: State) -> Special:
-    return Special(kind, float(at.z[-1]), at.z[:-1], multipliers(at.J))

@@ -19,6 +19,10 @@ from lcpstep.trajectory import Status
 Array = NDArray[np.float64]
 TOLERANCE = 1e-6  # of a return, relative to the size of the motion
 QUARTERS, FALLEN = 4, 0.5  # of a window; what a change falls to at least, from the first to the last of them
+RUNAWAY, GROWING = (
+    1e6,
+    10.0,
+)  # of a motion that grows without bound: times its starts; from quarter to quarter
 KICKS, KICK = 3, 1e-10  # rounds of a cycle on which it is tried, and with what share of the motion's size
 
 
@@ -85,6 +89,16 @@ def survive(
         result[on] &= run.status == Status.DONE
     away = np.max(np.abs(x - states[:, -1]), axis=1)
     return np.asarray(result & (away <= tolerance * np.max(size, axis=1)))
+
+
+def run_away(states: Array, starts: Array) -> NDArray[np.bool_]:
+    """Whether motions (m, window, d) from starts (s, d) grow without bound, by powers of ten from quarter to quarter.
+
+    What drifts steadily, or along a belt, does not.
+    """
+    quarters = np.array([np.max(np.abs(x), axis=(1, 2)) for x in np.array_split(states, QUARTERS, axis=1)])
+    far = quarters[-1] > RUNAWAY * float(np.max(np.abs(starts)))
+    return np.asarray(far & np.all(quarters[1:] > GROWING * quarters[:-1], axis=0))
 
 
 def periods_to_settle(states: Array, longest: int) -> int:

@@ -119,6 +119,9 @@ def run_attractor(options: argparse.Namespace) -> int:
         )
         if r["unsettled"]:
             print(f"  {r['unsettled']}")
+    nowhere = float(np.mean(found.label < 0))
+    if nowhere:
+        print(f"{'none':20} share {nowhere:6.1%}   motions that end early, or grow without bound")
     for name, x in compared.items():
         print(
             f"time-stepping against event-driven, {name}: distance {x.distance:.4g} "
