@@ -25,7 +25,7 @@ from lcpstep.analysis.attractor import Attractors as Attractors
 from lcpstep.analysis.grid_error import APART, spread, wandered
 from lcpstep.analysis.grouping import Settled, grouped, near, overlap
 from lcpstep.analysis.returns import TOLERANCE as TOLERANCE
-from lcpstep.analysis.returns import periods_to_settle, return_time, return_times, run_away, survive
+from lcpstep.analysis.returns import periods_to_settle, return_time, return_times, run_away, sizes, survive
 from lcpstep.analysis.sampled import POINTS as POINTS
 from lcpstep.analysis.sampled import STARTS, described
 from lcpstep.analysis.starts import random_starts as random_starts
@@ -109,10 +109,10 @@ def _settled(
     if isinstance(method, EventDriven) or tolerance is not None or len(done) == 0:
         allowed = TOLERANCE if tolerance is None else tolerance
         states = runs.states[done]
-        size = np.maximum(np.max(np.abs(states), axis=(1, 2)), 1e-300)
+        size = sizes(scene, method, states, phase)
         n = return_times(states, longest, allowed * size)
         if isinstance(method, EventDriven):
-            n[~survive(scene, method, states, n, phase, allowed)] = 0
+            n[~survive(scene, method, states, n, phase, allowed * size)] = 0
         return [
             Settled(int(i), states[k], np.full(states.shape[2], size[k]), allowed, int(n[k]))
             for k, i in enumerate(done)
@@ -140,8 +140,10 @@ def unsettled(P: PeriodMap, found: Attractor, states: Array, transient: int, lon
 
     states : (window, d)   of a run on it
     """
-    if found.periods or found.lyapunov.chaotic or not isinstance(P.method, EventDriven):
+    if found.periods or not isinstance(P.method, EventDriven):
         return ""  # time-stepping scatters what it repeats
+    if found.lyapunov.chaotic:
+        return _later(P, found, longest)
     more = periods_to_settle(states, longest)
     if more:
         return f"still on its way to a periodic motion: take a transient of some {transient + more} periods"
@@ -158,11 +160,14 @@ def unsettled(P: PeriodMap, found: Attractor, states: Array, transient: int, lon
 
 
 def _later(P: PeriodMap, found: Attractor, longest: int) -> str:
-    """Whether motions from an attractor that seems aperiodic have left it for periodic ones when it was sampled."""
+    """Whether motions from an attractor that seems aperiodic have left it for periodic ones when it was sampled.
+
+    Transient chaos has a positive exponent as long as it lasts.
+    """
     paths = found.points.reshape(STARTS, -1, found.points.shape[1])[:, -2 * longest :]
-    size = float(np.max(np.abs(paths)))
-    n = return_times(paths, longest, np.full(STARTS, TOLERANCE * size))
-    left = int(np.sum(survive(P.scene, P.method, paths, n, P.phase, TOLERANCE)))
+    allowed = TOLERANCE * sizes(P.scene, P.method, paths, P.phase)
+    n = return_times(paths, longest, allowed)
+    left = int(np.sum(survive(P.scene, P.method, paths, n, P.phase, allowed)))
     return (
         f"{left} of {STARTS} motions from there on have become periodic: take a longer transient"
         if left

@@ -78,7 +78,7 @@ def _points(found: tuple[Attractor, ...]) -> tuple[Array, Ints, Array]:
         return np.zeros((0, 2)), np.zeros(0, dtype=np.int64), np.ones(2)
     centre = np.concatenate([a.points for a in found])
     owner = np.repeat(np.arange(len(found)), [len(a.points) for a in found])
-    scale = np.maximum(np.max(np.abs(centre), axis=0), 1e-9 * (1.0 + np.max(np.abs(centre))))
+    scale = np.maximum(np.max(np.abs(centre), axis=0), 1e-9 * float(np.max(np.abs(centre))) or 1.0)
     return centre, owner, scale
 
 

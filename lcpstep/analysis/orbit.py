@@ -7,7 +7,7 @@ switches. Source: G. Osorio, Complex Behavior in Impacting Systems, sections 2.8
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, cast
 
 import numpy as np
@@ -18,7 +18,7 @@ from lcpstep.analysis.fixed_points import image_and_derivative, multipliers, per
 from lcpstep.analysis.variation import IMPACTS, PeriodMap
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
-from lcpstep.maps.modes import mode_at
+from lcpstep.maps.modes import started
 from lcpstep.simulation import Method, fitted, simulate
 
 Array = NDArray[np.float64]
@@ -83,7 +83,7 @@ class PeriodicOrbit:
         """The motion over its n periods, from the section on: a Trajectory, or a HybridTrajectory."""
         t_start = self.phase * self.scene.period
         span = (t_start, t_start + self.periods * self.scene.period)
-        return simulate(_started(self.scene, self.x[0], span), self.method)
+        return simulate(started(self.scene, self.x[0], span), self.method)
 
     def clearance(self) -> float:
         """Smallest gap that the free motion turns back from without a contact [m]; infinite where there is none."""
@@ -164,12 +164,6 @@ def described(P: PeriodMap, points: Array) -> PeriodicOrbit:
     )  # fmt: skip
 
 
-def _started(scene: Any, x: Array, span: tuple[float, float]) -> Any:
-    if isinstance(scene, HybridScene):
-        return scene.started(x, mode_at(scene, span[0], x), span)
-    return replace(scene, q0=x[: scene.n_q], v0=x[scene.n_q :], t_span=span)
-
-
 def quiet_phase(orbit: PeriodicOrbit) -> float:
     """The phase that is farthest from every impact of the orbit, in flight: a good place for a section."""
     phases = orbit.phases
@@ -202,6 +196,6 @@ def moved(orbit: PeriodicOrbit, phase: float) -> PeriodicOrbit:
     span = (t, t + (phase - orbit.phase) % 1.0 * T)
     if span[1] <= span[0]:
         return orbit
-    run = simulate(_started(orbit.scene, orbit.x[0], span), fitted(orbit.method, span), keep=[span[1]])
+    run = simulate(started(orbit.scene, orbit.x[0], span), fitted(orbit.method, span), keep=[span[1]])
     x = run.x[-1] if isinstance(run, HybridTrajectory) else np.concatenate([run.q[-1], run.v[-1]])
     return periodic_orbit(orbit.scene, x, orbit.periods, method=orbit.method, phase=phase)

@@ -13,11 +13,17 @@ from numpy.typing import NDArray
 
 from lagrangian import HybridScene, Scene
 from lcpstep.maps.batch import periods
-from lcpstep.simulation import Method
+from lcpstep.maps.modes import started
+from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-6  # of a return, relative to the size of the motion
+FAR, LEAST = (
+    0.1,
+    1e-4,
+)  # how little a motion far from zero moves, of the distance; what it is held to move at least
+SAMPLES = 33  # of a period
 QUARTERS, FALLEN = 4, 0.5  # of a window; what a change falls to at least, from the first to the last of them
 RUNAWAY, GROWING = (
     1e6,
@@ -59,13 +65,34 @@ def to_shoot_from(states: Array, longest: int, n: int | None = None) -> tuple[Ar
     return states[-1 if away[-1] <= TOLERANCE * size else int(np.argmin(away))], n
 
 
+def sizes(scene: Scene | HybridScene, method: Method, states: Array, phase: float) -> Array:
+    """Of motions whose states on the section are given, (m, window, d): what returns are measured by, (m,).
+
+    The largest value of all coordinates; of motions far from zero, which move by little of it, how far they move: a
+    period of theirs is looked at between the sections.
+    """
+    positions = slice(None, scene.n_x // 2 if isinstance(scene, Scene) else None)
+    largest = np.maximum(np.max(np.abs(states), axis=(1, 2)), 1e-300)
+    result = np.max(np.ptp(states[..., positions], axis=1), axis=1)
+    if isinstance(scene, Scene):
+        result = np.maximum(result, np.max(np.abs(states[..., scene.n_x // 2 :]), axis=(1, 2)))
+    start = phase * scene.period
+    for i in np.flatnonzero(result < FAR * largest):
+        run = simulate(started(scene, states[i, -1], (start, start + scene.period)), method)
+        at = run.at(np.linspace(start, run.t[-1], SAMPLES))
+        result[i] = max(
+            float(result[i]), float(np.max(np.ptp(at[0] if isinstance(at, tuple) else at, axis=0)))
+        )
+    return np.clip(result, LEAST * largest, largest)
+
+
 def survive(
     scene: Scene | HybridScene,
     method: Method,
     states: Array,
     n: NDArray[np.int64],
     phase: float,
-    tolerance: float,
+    allowed: Array,
 ) -> NDArray[np.bool_]:
     """Whether motions that return after n periods still do when they are kicked a little in every period.
 
@@ -73,7 +100,7 @@ def survive(
     ----------
     states : (m, window, d)   of the motions, the last one is kicked
     n : (m,)   periods after which each returns, 0 for never
-    tolerance : of a return, relative to the largest value of all coordinates
+    allowed : (m,)   distance of a return
     """
     result = n > 0
     size = np.max(np.abs(states), axis=1)
@@ -88,7 +115,7 @@ def survive(
         left[on] = np.where(run.status == Status.DONE, left[on] - 1, 0)
         result[on] &= run.status == Status.DONE
     away = np.max(np.abs(x - states[:, -1]), axis=1)
-    return np.asarray(result & (away <= tolerance * np.max(size, axis=1)))
+    return np.asarray(result & (away <= allowed))
 
 
 def run_away(states: Array, starts: Array) -> NDArray[np.bool_]:

@@ -108,3 +108,10 @@ def raised() -> None:
     error = cause()
     if error is not None:
         raise error
+
+
+def started(scene: Any, x: Array, span: tuple[float, float]) -> Any:
+    """The scene, with modes or without, from another state and over another span."""
+    if isinstance(scene, HybridScene):
+        return scene.started(x, mode_at(scene, span[0], x), span)
+    return replace(scene, q0=x[: scene.n_q], v0=x[scene.n_q :], t_span=span)

@@ -19,9 +19,11 @@ from lagrangian import (
     System,
 )
 from lcpstep import EventDriven
+from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.lyapunov import lyapunov
 from lcpstep.analysis.map_diagram import periodic_points
 from lcpstep.analysis.orbits import periodic_orbit
+from lcpstep.analysis.starts import random_starts
 from lcpstep.analysis.variation import PeriodMap
 
 T = 2.0 * math.pi / 1.3
@@ -112,3 +114,22 @@ def test_a_map_without_a_derivative_is_differenced_over_its_own_length(unit):
     assert cycle.multipliers[0].real == pytest.approx(slope, abs=1e-9)
     one = lyapunov(lambda x: sine(unit * x) / unit, [0.3], 30)
     assert lyapunov(sine, [0.3 * unit], 30).largest == pytest.approx(one.largest, abs=1e-6)
+
+
+@pytest.mark.parametrize(("unit", "place"), [(1e-6, 1.0), (1.0, 1e4), (1e-3, -3.0)])
+def test_attractors_of_a_motion_far_from_zero_are_those_near_it(unit, place):
+    def struck(unit, place):
+        force = Harmonic(constant=place, cosine=unit, omega=2.6)
+        stop = LinearContacts(G=-1.0, offset=place + 0.3 * unit, restitution=0.8)
+        block = LinearSystem(M=1.0, C=0.04, K=1.0, force=force)
+        return Scene(block, place, 0.0, (0.0, 1.0), contacts=stop, period=2.0 * math.pi / 2.6)
+
+    starts = random_starts([[-1.0, -1.0], [0.3, 1.0]], 20, seed=0)
+    near, far = (
+        attractors(struck(unit, place), EventDriven(1e-12, 1e-12 * unit), [place, 0.0] + unit * starts)
+        for unit, place in ((1.0, 0.0), (unit, place))
+    )
+    assert [a.name for a in near.found] == ["O(4, 2)", "O(4, 3)", "O(1, 0)"]
+    assert [(a.name, a.share) for a in far.found] == [(a.name, a.share) for a in near.found]
+    for one, other in zip(near.found, far.found, strict=True):
+        assert other.lyapunov.largest == pytest.approx(one.lyapunov.largest, abs=1e-5)
