@@ -233,3 +233,23 @@ def test_where_nothing_may_be_written_one_line_says_so(folder, capsys, monkeypat
         assert re.search(
             r"^lcpstep: closed\S*( could not be written)?: Permission denied; choose another place", err
         )
+
+
+def test_negative_numbers_may_have_an_exponent(capsys, tmp_path):
+    small = [
+        "--set",
+        "amplitude=1e-6",
+        "stop=2e-7",
+        "--box",
+        "-1e-6",
+        "-2e-7",
+        "-1e-6",
+        "1e-6",
+        "--starts",
+        "2",
+    ]
+    done, out, _ = run(
+        capsys, "attractor", "impact-oscillator", *small, "--transient", "50", "--out", tmp_path
+    )
+    assert done == DONE, out
+    assert "O(1, 1)" in out

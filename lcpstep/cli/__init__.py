@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import argparse
 import errno
+import re
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from lcpstep import __version__
 from lcpstep.cli import abs as abs_
@@ -93,9 +95,17 @@ def command() -> None:
     sys.exit(interrupt.ending(main))
 
 
+class _Parser(argparse.ArgumentParser):
+    """To which -4e-7 is a number, as it is to argparse itself from Python 3.14 on, and no option."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._negative_number_matcher = re.compile(r"-\.?\d")
+
+
 def parser() -> argparse.ArgumentParser:
     """Arguments of the command line."""
-    top = argparse.ArgumentParser(
+    top = _Parser(
         prog="lcpstep",
         description="Mechanical systems with impacts: time-stepping and event-driven simulation.",
         epilog="Start with: lcpstep compare cam-follower",
