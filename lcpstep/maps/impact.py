@@ -14,12 +14,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import Scene, checks
 from lcpstep.errors import LcpStepError
+from lcpstep.events import EventDriven
 from lcpstep.maps.local import Local
-from lcpstep.maps.phase import NoReturn, phase_of, time_of, waits
+from lcpstep.maps.phase import NoReturn, bounded, phase_of, time_of, waits
 from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
+FIRST = 8.0  # periods that are waited at first, by a method that stops after some events
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,15 +66,24 @@ class ImpactMap:
         t, q, v = self.state(x)
         if not self.scene.gap(t, q, v)[1][0] < 0.0:
             raise ValueError(f"x: expected an impact, a negative gap velocity, got {x.tolist()}")
-        # The impact at x is the first event of the run; the one after it is looked for in growing spans.
+        # The impact at x is the first event of the run; the one after it is looked for in growing spans. To prepare a
+        # run costs more than a few periods of motion
         longest = self.limit * self.scene.period
-        for wait in waits(self.scene.period, longest):
-            run = simulate(replace(self.scene, q0=q, v0=v, t_span=(t, t + wait)), self.method, keep="impacts")
+        stops = isinstance(self.method, EventDriven)
+        for wait in waits((FIRST if stops else 1.0) * self.scene.period, longest):
+            scene = replace(self.scene, q0=q, v0=v, t_span=(t, t + wait))
+            for method in bounded(self.method) if isinstance(self.method, EventDriven) else (self.method,):
+                run = simulate(scene, method, keep="impacts")
+                hits, cut = (
+                    np.flatnonzero(run.impacts.kind == Kind.IMPACT),
+                    run.status == Status.TOO_MANY_EVENTS,
+                )
+                if len(hits) > 1 and not (cut and run.t[-1] <= run.impacts.time[hits[1]]):
+                    return self._point(run, int(hits[1]))
+                if not cut:
+                    break
             if run.status != Status.DONE:
                 raise LcpStepError(f"the motion from x = {x.tolist()} ended early: {run.message}")
-            hits = np.flatnonzero(run.impacts.kind == Kind.IMPACT)
-            if len(hits) > 1:
-                return self._point(run, int(hits[1]))
         raise NoReturn(x, longest)
 
     def state(self, x: Array) -> tuple[float, Array, Array]:
