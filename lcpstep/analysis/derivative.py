@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lcpstep.lengths import derivative as over_lengths
 from lcpstep.lengths import lengths
 from lcpstep.maps.iteration import Map, iterate
 
@@ -76,12 +75,6 @@ def differences(
             total = total + w * (np.atleast_1d(f(x + s * d)) - np.atleast_1d(f(x - s * d)))
         columns.append(total / d[i])
     return np.stack(columns, axis=1)
-
-
-def smooth_differences(f: Any, x: ArrayLike, size: ArrayLike) -> Array:
-    """The same over lengths on which f is smooth, (e, d); size : (d,) of the motion, see `lengths`."""
-    x = np.atleast_1d(np.asarray(x, dtype=float))
-    return over_lengths(f, x, RELATIVE_STEP, np.atleast_1d(np.asarray(size, dtype=float)))
 
 
 def one_sided(f: Callable[[float], Array], t: float, step: float) -> Array:

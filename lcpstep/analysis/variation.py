@@ -17,11 +17,10 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian import Scene, checks
-from lcpstep.analysis.derivative import RELATIVE_STEP, differences, smooth_differences
+from lagrangian import LinearContacts, LinearSystem, Scene, checks
+from lcpstep.analysis.derivative import differences
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
-from lcpstep.lengths import ASIDE, lengths, sizes
 from lcpstep.maps.batch import Periods, periods
 from lcpstep.maps.follow import Follower
 from lcpstep.maps.local import Local
@@ -32,7 +31,6 @@ from lcpstep.trajectory import Kind, Status, Trajectory
 
 Array = NDArray[np.float64]
 IMPACTS = 512  # of a period by time-stepping that a derivative is made of
-TOLERANCE = 1e-11  # of the variational flow where it is integrated
 
 
 def factors(run: Trajectory) -> list[Array]:
@@ -50,8 +48,9 @@ def factors(run: Trajectory) -> list[Array]:
     ------
     LcpStepError   the run ended early, or has events at which its end has no derivative, as simultaneous impacts
     """
-    contacts = run.scene.contacts
-    if run.scene.n_j > 0 or contacts is None or run.scene.n_c > 1 or contacts.friction is not None:
+    scene, contacts = run.scene, run.scene.contacts
+    linear = isinstance(scene.system, LinearSystem) and isinstance(contacts, LinearContacts)
+    if not linear or scene.n_j > 0 or scene.n_c > 1 or contacts.friction is not None:
         return Walk(run).factors()
     if run.status != Status.DONE:
         raise LcpStepError(f"the motion ended early: {run.message}")
@@ -76,11 +75,7 @@ def impact_law(local: Local, t: float, q: Array, v: Array) -> tuple[Array, Array
     G, _ = local.rates(t, q, v)
     R_x, R_t = np.eye(2 * n), np.zeros(2 * n)
     R_x[n:, n:] -= (1.0 + r) / W * np.outer(MG, G)
-    if local.model.flat and local.model.linear:
-        R_t[n:] = -(1.0 + r) / W * MG * local.bias(t, q, v)
-    else:
-        R_x[n:, :n] = smooth_differences(lambda y: local.after_impact(t, y, v), q, local.size)
-        R_t[n:] = smooth_differences(lambda s: local.after_impact(float(s[0]), q, v), t, local.span)[:, 0]
+    R_t[n:] = -(1.0 + r) / W * MG * local.bias(t, q, v)
     return R_x, R_t
 
 
@@ -93,18 +88,14 @@ def landing(local: Local, t: float, q: Array, v: Array) -> Array:
     D = np.eye(2 * n)
     D[:n, :n] -= loss
     D[n:, n:] -= loss
-    if not local.model.flat:
-        turned = smooth_differences(lambda y: np.array([local.rates(t, y, v)[1]]), q, local.size)[0]
-        D[n:, :n] -= np.outer(MG, turned) / W
     return D
 
 
 class _Variation:
-    """Walks along a trajectory."""
+    """Walks along a trajectory of a linear system with one contact, whose flows are matrix exponentials."""
 
     def __init__(self, run: Trajectory) -> None:
-        self.run, self.local = run, Local(run.scene, sizes(run), float(run.t[-1] - run.t[0]))
-        self.linear = bool(self.local.model.linear and self.local.model.flat)
+        self.run, self.local = run, Local(run.scene)
 
     def factors(self) -> list[Array]:
         run, spans = self.run, []
@@ -141,8 +132,6 @@ class _Variation:
         """The smooth flow over each span."""
         from scipy.linalg import expm
 
-        if not self.linear:
-            return [self.integrated(*span) for span in spans]
         free, constrained = self.matrices()
         stack = np.array([(b - a) * (constrained if closed else free) for a, b, closed, _ in spans])
         return list(expm(stack))
@@ -158,39 +147,6 @@ class _Variation:
         keep = np.eye(n) - np.outer(MG, G) / W
         both = np.block([[keep, np.zeros((n, n))], [np.zeros((n, n)), keep]])
         return free, both @ free
-
-    def integrated(self, a: float, b: float, closed: bool, row: int) -> Array:
-        """State and variations together, over a span of any system."""
-        from scipy.integrate import solve_ivp
-
-        n = self.run.scene.n_q
-        if b <= a:
-            return np.eye(2 * n)
-
-        def right_hand_side(t: float, y: Array) -> Array:
-            x, J = y[: 2 * n], y[2 * n :].reshape(2 * n, 2 * n)
-            A = differences(lambda z: self.field(t, z, closed), x, scale=scale)
-            return np.concatenate([self.field(t, x, closed), (A @ J).ravel()])
-
-        start = np.concatenate([self.run.q[row], self.run.v[row], np.eye(2 * n).ravel()])
-        aside = start[: 2 * n] + ASIDE * self.local.size
-        scale = lengths(lambda z: self.field(a, z, closed), aside, RELATIVE_STEP, self.local.size)
-        errors = TOLERANCE * np.append(np.minimum(self.local.size, 1.0), np.ones(4 * n * n))
-        done = solve_ivp(right_hand_side, (a, b), start, method="DOP853", rtol=TOLERANCE, atol=errors)
-        if not done.success:
-            raise LcpStepError(f"the variational flow could not be integrated: {done.message}")
-        return np.asarray(done.y[2 * n :, -1].reshape(2 * n, 2 * n))
-
-    def field(self, t: float, x: Array, closed: bool) -> Array:
-        """F, or F_s = F - W^-1 alpha M^-1 G^T with the contact closed."""
-        n = self.run.scene.n_q
-        q, v = np.ascontiguousarray(x[:n]), np.ascontiguousarray(x[n:])
-        a = self.local.acceleration(t, q, v)
-        if closed:
-            MG, W = self.local.response(t, q, v)
-            G, _ = self.local.rates(t, q, v)
-            a = a - MG * (float(G @ a) + self.local.bias(t, q, v)) / W
-        return np.concatenate([v, a])
 
 
 def flow(scene: Scene, duration: float) -> Array:

@@ -17,18 +17,10 @@ Array = NDArray[np.float64]
 
 
 class Local:
-    """Evaluates a scene's equations; see the head of the file.
+    """Evaluates a scene's equations; see the head of the file."""
 
-    Parameters
-    ----------
-    scene : Scene
-    size : (2 n_q,)   of coordinates and velocities in the motion at hand, and its span: lengths of differences
-    span : [s]
-    """
-
-    def __init__(self, scene: Scene, size: Array | None = None, span: float = 1.0) -> None:
+    def __init__(self, scene: Scene) -> None:
         self.scene, self.model = scene, model(scene)
-        self.size, self.span = np.ones(2 * scene.n_q) if size is None else size, span
         self.point = Point(self.model)
         self.restitution = float(self.model.arrays["restitution"][0])
 

@@ -1,8 +1,9 @@
 """The law of an impact that has happened as a map of states, differentiated: which contacts stick and slide in it.
 
-    v+ = v + M^-1 C^T p,   K v+ + rate = -r (K v + rate)
+    v+ = v + M^-1 C^T p,   K v+ + rate+ = -r (K v + rate)
 
-K: joints, normals that get an impulse, tangents that stick; C: the same, with the friction of those that slide.
+K: joints, normals that get an impulse, tangents that stick; C: the same, with the friction of those that slide. Rates
+differ where obstacles, frames or belts take on another velocity at a corner of the scene.
 Moreau's law with the set of contacts and directions that the run has found. Source: as `impact`.
 """
 
@@ -38,6 +39,9 @@ class Blow:
         self.friction, r = contacts.friction, np.asarray(contacts.restitution, dtype=float)
         self.r_T, method = self.friction.tangential(r), walk.run.method
         self.noise = SLACK * (method.atol + method.rtol * float(np.max(np.abs(self.v_after))))
+        self.turned = (
+            self.rates_after(walk, before, after) if walk.at_corner(self.t) else np.zeros(self.s.n_r)
+        )
         strikes = [e for e in events if e.kind == Kind.IMPACT]
         self.active = sorted({int(e.contact) for e in strikes})
         if len(strikes) > len(self.active) or self.late(strikes):
@@ -54,6 +58,14 @@ class Blow:
                 "(another `law`, or contacts that are struck in turn): no derivative is known"
             )
 
+    def rates_after(self, walk: Any, before: Any, after: Any) -> Array:
+        """By how much the rates of rows jump at a corner of the scene."""
+        rates = []
+        for piece, hold in ((after, walk.hold_from_the_start), (before, walk.hold_to_the_end)):
+            hold(piece)
+            rates.append(point.rows(self.s, self.t, self.x)[2].copy())
+        return np.asarray(rates[0] - rates[1])
+
     def late(self, strikes: Any) -> bool:
         """Whether a contact strikes with another speed than it came with, by an impact at the same instant."""
         R, _, rate, _ = point.rows(self.s, self.t, self.x)
@@ -65,7 +77,10 @@ class Blow:
         """Contact: direction of the friction impulse, for those that slide through the impact: u_T+ + r u_T- != 0."""
         n_j, n_c = self.s.n_j, self.s.n_c
         R, _, rate, _ = point.rows(self.s, self.t, self.x)
-        before, after = ((R @ v + rate)[n_j + n_c :] for v in (self.x[self.n :], self.v_after))
+        before, after = (
+            (R @ self.x[self.n :] + rate)[n_j + n_c :],
+            (R @ self.v_after + rate + self.turned)[n_j + n_c :],
+        )
         left, mu = after + self.r_T * before, self.mu(self.t, self.x, before)
         size = EDGE * (np.abs(after) + np.abs(before)) + self.noise
         return {c: -float(np.sign(left[c])) for c in self.active if abs(left[c]) > size[c] or mu[c] == 0.0}
@@ -75,7 +90,7 @@ class Blow:
         return np.asarray(self.friction.coefficients(t, x[: self.n], u, self.p)[0])
 
     def matrices(self, t: float, x: Array) -> tuple[Array, Array, Array]:
-        """K (rows, n_q), M^-1 C^T (n_q, rows), and (2, rows): 1 + r, and the rates of the rows."""
+        """K (rows, n_q), M^-1 C^T (n_q, rows), and (3, rows): 1 + r, rates of the rows, by how much these jump."""
         n_j, n_c = self.s.n_j, self.s.n_c
         R, MR, rate, _ = point.rows(self.s, t, np.ascontiguousarray(x))
         stuck = [c for c in self.active if c not in self.sliding]
@@ -84,19 +99,19 @@ class Blow:
         for c, way in self.sliding.items():
             C[n_j + c] += way * mu[c] * MR[n_j + n_c + c]
         r = np.array([0.0] * n_j + [self.r[c] for c in self.active] + [self.r_T[c] for c in stuck])
-        return R[rows], C[rows].T, np.stack([1.0 + r, rate[rows]])
+        return R[rows], C[rows].T, np.stack([1.0 + r, rate[rows], self.turned[rows]])
 
     def law(self, t: float, x: Array) -> Array:
         """v+ (n_q,)."""
-        K, C, (share, rate) = self.matrices(t, x)
+        K, C, (share, rate, turned) = self.matrices(t, x)
         v = x[self.n :]
-        return np.asarray(v - C @ np.linalg.pinv(K @ C) @ (share * (K @ v + rate)))
+        return np.asarray(v - C @ np.linalg.pinv(K @ C) @ (share * (K @ v + rate) + turned))
 
     def derivatives(self) -> tuple[Array, Array]:
         """R_x (2 n_q, 2 n_q) and R_t (2 n_q,) of the state after the impact, (q, v+)."""
         n = self.n
         R_x, R_t = np.eye(2 * n), np.zeros(2 * n)
-        K, C, (share, _) = self.matrices(self.t, self.x)
+        K, C, (share, _, _) = self.matrices(self.t, self.x)
         R_x[n:, n:] -= C @ np.linalg.pinv(K @ C) @ (share[:, None] * K)
         if not self.s.constant:
             m = 2 * n if callable(self.friction.mu) else n  # linear in v where mu does not depend on it

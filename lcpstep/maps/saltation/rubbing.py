@@ -43,10 +43,15 @@ SAME = 1e-12  # times that are one, relative
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Smooth motion from the state x at t on, to `end` where it is x_end, with its modes; J: its derivative."""
+    """Motion from the state x at t on, to `end` where it is x_end, with its modes; J: its derivative.
+
+    It goes on over corners of the scene; from `smooth` on, where it is x_smooth, there is none.
+    """
 
     t: float
     x: Array
+    smooth: float
+    x_smooth: Array
     end: float
     x_end: Array
     mode: Any
@@ -91,7 +96,7 @@ class Walk:
         after, events = self.following(piece, piece.end), self.happened(piece.end)
         if Kind.ACCUMULATION in set(events.kind) or self.at_corner(piece.end):
             raise LcpStepError(f"what happens at t = {time:g} s has no guard whose time the state decides")
-        point.hold(self.s, piece.t, piece.x, piece.mode, piece.direction)
+        self.hold_to_the_end(piece)
         F = point.field(self.s, piece.end, piece.x_end)
         H_x, slope = self.guard(piece, events, F)
         R_x, R_t = self.law(piece, after, events)
@@ -160,13 +165,15 @@ class Walk:
             smooth = lengths(lambda y: point.field(self.s, t, y), aside, RELATIVE_STEP, self.sizes)
         self.flow.start(t, x, smooth)
         x_end, J = self.flow.reached()
+        last, x_last = t, x
         for a, b in self.between_corners(t, end):
+            last, x_last = a, x_end
             point.hold(self.s, a, x_end, mode, direction)
             code = self.flow.go_on(a, b)
             if code != Status.DONE:
                 raise LcpStepError(f"the variational flow could not be integrated: {Status(code).name}")
             x_end, J = self.flow.reached()
-        return Piece(t, x, end, x_end, mode, direction, J)
+        return Piece(t, x, last, x_last, end, x_end, mode, direction, J)
 
     def between_corners(self, t: float, end: float) -> list[tuple[float, float]]:
         """The span cut at the corners of the scene."""
@@ -209,13 +216,13 @@ class Walk:
             raise LcpStepError(f"{when}; {refused('endless-together', self.run.scene)}")
         if ended:
             return self.lost(after)
-        point.hold(self.s, before.t, before.x, before.mode, before.direction)
+        self.hold_to_the_end(before)
         F_before = point.field(self.s, t, before.x_end)
         R_x, R_t = self.law(before, after, events)
         if self.at_corner(t):
             return R_x  # the time is that of a corner, whatever the state
         H_x, slope = self.guard(before, events, F_before)
-        point.hold(self.s, t, after.x, after.mode, after.direction)
+        self.hold_from_the_start(after)
         F_after = point.field(self.s, t, after.x)
         change = F_after - R_x @ F_before - R_t
         if np.max(np.abs(change)) <= CONTINUOUS * (np.max(np.abs(F_before)) + np.max(np.abs(F_after))):
@@ -225,6 +232,14 @@ class Walk:
                 f"the event at t = {t:g} s is not transversal: the motion has no derivative there"
             )
         return np.asarray(R_x + np.outer(change, H_x) / slope)
+
+    def hold_from_the_start(self, piece: Piece) -> None:
+        """Hold the modes of a piece, from where it begins."""
+        point.hold(self.s, piece.t, piece.x, piece.mode, piece.direction)
+
+    def hold_to_the_end(self, piece: Piece) -> None:
+        """Hold the modes of a piece, with forces and obstacles as they are just before its end."""
+        point.hold(self.s, piece.smooth, piece.x_smooth, piece.mode, piece.direction)
 
     def lost(self, piece: Piece) -> Array:
         """What is left of a deviation from the surfaces held from the start of a piece on, (2 n_q, 2 n_q)."""
@@ -244,7 +259,7 @@ class Walk:
         """H_x and H_x F- + H_t of what has triggered the events, under the modes before them."""
         t, x = float(events.time[0]), before.x_end
         c, column = self.trigger(before, events)
-        point.hold(self.s, before.t, before.x, before.mode, before.direction)
+        self.hold_to_the_end(before)
         if column == 0 and before.mode[c] == OPEN:
             R, _, rate, _ = point.rows(self.s, t, x)
             G, rate = R[self.s.n_j + c], rate[self.s.n_j + c]
