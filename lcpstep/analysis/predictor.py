@@ -191,6 +191,8 @@ class Follower:
     def equations(self, z: Array) -> tuple[Array, Array]:
         """F and DP^n at z."""
         image, J = image_and_derivative(self.family(float(z[-1])), z[:-1], self.n, self.size(z))
+        if not np.all(np.isfinite(J)):  # as where a contact is grazed to the last digit
+            raise LcpStepError(f"the map has no derivative at {z[:-1].tolist()}")
         return image - z[:-1], J
 
     def slope(self, z: Array) -> Array:

@@ -113,3 +113,21 @@ def test_a_ball_that_chatters_and_rests_is_followed_until_its_chattering_is_cut_
     )
     assert np.all(before == 1)
     assert np.all(after == 0)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_branch_ends_before_points_that_have_no_derivative():
+    class Bent:
+        def __init__(self, p):
+            self.p = p
+
+        def __call__(self, x):
+            return 0.5 * x + self.p
+
+        def jacobian(self, x):
+            return np.array([[0.5 if self.p < 0.7 else math.nan]])
+
+    branch = continue_point(Bent, [0.2], 0.1, (0.0, 1.0))
+    assert branch.ended.startswith("no point of the branch beyond")
+    assert branch.p[-1] == pytest.approx(0.7, abs=1e-4)
+    assert np.all(np.isfinite(branch.multipliers))
