@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from benchmarks.judge.describe import Description
-from lagrangian import Contacts, Scene, scenes
-from lcpstep import EventDriven, Located, simulate
+from lagrangian import Contacts, Coulomb, Scene, System, scenes
+from lcpstep import EventDriven, Kind, Located, simulate
 from lcpstep.turns import FastTurn
 from tests.audit.test_audit import over_a_bump
 
@@ -38,6 +38,34 @@ def roof_q(t, q, v, p, out):
     """Its Jacobian."""
     x = q[0] - p[2]
     out[0, 0], out[0, 1] = (math.copysign(p[0] / p[1], x) if abs(x) < p[1] else 0.0), 1.0
+
+
+def groove(t, q, v, p, out):
+    """Walls at the angles p[0] and p[1] from the vertical's foot, in which a cylinder lies; q = (x, y, angle)."""
+    out[0] = math.sin(p[0]) * q[0] + math.cos(p[0]) * q[1]
+    out[1] = -math.sin(p[1]) * q[0] + math.cos(p[1]) * q[1]
+
+
+def groove_q(t, q, v, p, out):
+    """Its Jacobian."""
+    out[0, 0], out[0, 1], out[0, 2] = math.sin(p[0]), math.cos(p[0]), 0.0
+    out[1, 0], out[1, 1], out[1, 2] = -math.sin(p[1]), math.cos(p[1]), 0.0
+
+
+def along_groove(t, q, v, p, out):
+    """Sliding velocities of the cylinder, radius p[2], on the walls."""
+    out[0, 0], out[0, 1], out[0, 2] = math.cos(p[0]), -math.sin(p[0]), p[2]
+    out[1, 0], out[1, 1], out[1, 2] = math.cos(p[1]), math.sin(p[1]), p[2]
+
+
+def flat(t, q, v, p, out):
+    """Walls are."""
+    out[0] = out[1] = 0.0
+
+
+def weight(t, q, v, p, out):
+    """Of 1 kg."""
+    out[0], out[1], out[2] = 0.0, -9.81, 0.0
 
 
 def over(gap, jacobian, p, method):
@@ -89,6 +117,30 @@ def test_no_ready_scene_is_warned_of(name):
     with warnings.catch_warnings():
         warnings.simplefilter("error", FastTurn)
         simulate(scenes.CATALOGUE[name].make(), EventDriven())
+
+
+@pytest.mark.parametrize(
+    ("angle", "method"),
+    [
+        (0.1, Located(0.1, order=4, tolerance=1e-4)),
+        (0.2, Located(2.5e-3, order=4)),
+    ],
+)
+def test_what_lies_still_in_a_groove_at_zero_tells_nothing(angle, method):
+    """A spinning cylinder comes to rest where all coordinates of the gaps are zero but for rounding of 1e-50 m."""
+    a, mu, R = math.pi / 4.0, 0.3, 0.1
+    contacts = Contacts(2, groove, groove_q, bias=flat, friction=Coulomb(mu, along_groove))
+    body = System(3, np.diag([1.0, 1.0, 0.5 * R * R]), weight)
+    scene = Scene(body, [0.0] * 3, [0.0, 0.0, 40.0], (0.0, 3.0), contacts, p=[a, angle, R])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", FastTurn)
+        run = simulate(scene, method)
+    # Forces of both walls, each with its friction, carry the weight; their frictions stop the spin
+    n = np.array([[math.sin(a), math.cos(a)], [-math.sin(angle), math.cos(angle)]])
+    t = np.array([[math.cos(a), -math.sin(a)], [math.cos(angle), math.sin(angle)]])
+    N = np.linalg.solve((n - mu * t).T, [0.0, 9.81])
+    stops = run.impacts.time[run.impacts.kind == Kind.STICK_TANGENT]
+    np.testing.assert_allclose(stops, 40.0 * 0.5 * R / (mu * N.sum()), rtol=1e-12)
 
 
 def test_steps_as_short_as_rounding_of_time_lets_an_obstacle_move_tell_nothing():

@@ -169,7 +169,7 @@ def turning(
     -------
     look and contact; -1 and 0 where there is none
     """
-    count, work = len(t), np.zeros((2 * looks + 6) * m.n_c + m.n_q * (m.n_c + 1))
+    count, work = len(t), np.zeros((2 * looks + 6) * m.n_c + m.n_q * (m.n_c + m.n_q + 2))
     at, x, x_t = doubles(t), doubles(q), doubles(v)
     others, bounds, own = doubles(places), doubles(limits), doubles(work)
     found = find_turn(m, count, at, x, x_t, steps, looks, golden, others, len(places), bounds, own)
@@ -197,7 +197,7 @@ def find_turn(
     before, later, largest, x = work, after(work, n), after(work, 5 * n), after(work, 6 * n)
     start, end, other = after(work, 2 * n), after(work, 3 * n), after(work, 4 * n)
     G, g = after(x, n_q), after(x, n_q * (n + 1))
-    bent = after(g, looks * n)
+    bent, force = after(g, looks * n), after(g, 2 * looks * n)
     with cython.nogil:
         first, last = t[0], t[count - 1]
         mean = (last - first) / steps
@@ -227,7 +227,9 @@ def find_turn(
             if not (left > most and bent[j] > faster * left):
                 continue
             gap_rates(m, t[k], own, v_own, G, other)
-            if left > rounding * (abs(other[c] * t[k]) + size_of_product(G, own, c, n_q)):
+            size = abs(other[c] * t[k]) + size_of_product(G, own, c, n_q)
+            # At rest near zero the coordinates are themselves rounding, of what forces that cancel make in a step
+            if left > rounding * (size + h * h * pushed(m, t[k], own, v_own, after(G, c * n_q), force)):
                 found = j
             for i_p in range(n_places):
                 if found == j:
@@ -235,6 +237,16 @@ def find_turn(
                     if not bent[j] > faster * abs(other[c] - start[c] - places[i_p] * slope):
                         found = -1
     return found
+
+
+def pushed(m: Model, t: float, q: Doubles, v: Doubles, G: Doubles, work: Doubles) -> float:
+    """Size of the acceleration of a gap by all forces, as if no coordinate moved another one."""
+    n, size, M = m.n_q, 0.0, after(work, m.n_q)
+    total_force(m, t, q, v, work)
+    mass(m, t, q, v, M)
+    for j in range(n):
+        size += abs(G[j] * work[j] / M[j * n + j])
+    return size
 
 
 def spread(i: int, looks: int, golden: float) -> float:
