@@ -166,10 +166,10 @@ def least_effect(s: Rows, i: int, x: Doubles, size: float) -> float:
     Zero where it depends on no coordinate, as in the middle of a bowl.
     """
     own, least = s.D[i * s.n_r + i], -1.0
-    most = s.rtol * size / sqrt(own) if own > 0.0 else 0.0
+    most = s.rtol * size * sqrt(own)
     for j in range(s.n_q):
         moved = abs(s.MR[i * s.n_q + j])
-        if moved > 0.0:
-            here = (min(s.atol, most * moved) + s.rtol * abs(x[j])) * own / moved
+        if moved > 0.0:  # however little: a product with it might be zero
+            here = min(s.atol * own / moved, most) + s.rtol * abs(x[j]) * own / moved
             least = here if least < 0.0 or here < least else least
     return least if least > 0.0 else 0.0
