@@ -1,10 +1,10 @@
 """Whether a run has come to a standstill: steps that go on, and hardly take the time on with them.
 
 A step may be short, and impacts as many as they like. But where so many steps, or events that are no impacts,
-take the time on by next to nothing of the span, the rest of it would take days. So it would where a million
-impacts do and double the energy, as elastic bodies between obstacles that close in: light balls between heavy
-ones meet them as often, at one energy. Where a body is to rest that one contact force cannot hold, or a force is
-no function of time and state, each step meets the tolerance, and none is long.
+take the time on by next to nothing of the span, the rest of it would take days. So it may where all of them are
+impacts: of elastic bodies between obstacles that close in, whose energy grows and grows. Light balls
+between heavy ones meet them a million times, too, at one energy. Where a body is to rest that one contact force
+cannot hold, or a force is no function of time and state, each step meets the tolerance, and none is long.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ import math
 from collections.abc import Callable
 
 STEPS = 20_000  # in a row
-IMPACTS, GROWTH = (
-    1_000_000,
-    2.0,
-)  # of any kind in a row, in which the kinetic energy becomes so many times as large
+IMPACTS = (
+    1_000_000  # steps and events of any kind: from so many on it is looked at, each time they have doubled,
+)
+GROWTH, TOO_MANY = 1.25, 3e8  # how the energy has grown meanwhile, and how many the rest would take
 PER_IMPACT = 100  # steps that the search for one may take
 # Of the span, or of what so many of the longest steps do: what they take the time on by at least, or crawl
 LEAST, CRAWL = 1e-6, 0.1
@@ -34,7 +34,7 @@ class Standstill:
     """
 
     def __init__(self, span: tuple[float, float], h: float) -> None:
-        self.way = min(span[1] - span[0], h * STEPS)
+        self.way, self.end = min(span[1] - span[0], h * STEPS), span[1]
         self.steps, self.since, self.words, self.crawls = 0, -math.inf, "", False
         self.first, self.begin, self.energy = 0, -math.inf, 0.0  # of those of any kind
 
@@ -45,7 +45,7 @@ class Standstill:
 
         impacts : how many there were from a time on;  energy : the kinetic energy now
         """
-        if steps - self.first >= IMPACTS and self.ever_faster(steps, now, energy()):
+        if steps >= max(2 * self.first, IMPACTS) and self.ever_faster(steps, now, energy()):
             return True
         onward, taken = now - self.since, steps - self.steps
         if taken < STEPS and onward < CRAWL * self.way:
@@ -61,7 +61,7 @@ class Standstill:
         onward, taken, fed = now - self.begin, steps - self.first, energy >= GROWTH * self.energy
         self.first, self.begin, self.energy = steps, now, energy
         self.words = f"{told(taken, onward)}, as where bodies go to and fro between obstacles that close in,"
-        self.crawls = onward < LEAST * self.way and fed
+        self.crawls = fed and taken * (self.end - now) > TOO_MANY * onward
         return self.crawls
 
 
