@@ -15,6 +15,7 @@ from lcpstep.events.codes import ACCUMULATION, IMPACT, JAM, JUMP, LEANS, NO_IMPU
 from lcpstep.events.contacts.equations import measure, renew_friction
 from lcpstep.events.contacts.parting import approaches, let_go, pass_by, rejoin
 from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.contacts.surfaces import GONE
 from lcpstep.events.rows.contacts import measure_velocities, sliding, still, stop_rows
 from lcpstep.events.rows.cycle import ROUNDS, fades, look_back, recurs, sum_up
 from lcpstep.events.rows.exchange import leave_for_later, some_exchange
@@ -263,10 +264,15 @@ def is_free(s: Rubbing, c: int) -> bool:
 
 
 def forget_terms(s: Rubbing) -> None:
-    """A new instant: what rounding leaves of gap velocities is that of the velocities at hand."""
+    """A new instant: what rounding leaves of gap velocities is that of the velocities at hand.
+
+    Next to nothing is none: hops of a body at rest in a heap, on which no force acts but those of others, may else
+    fade until no number tells them apart.
+    """
     s.rounds = 0
     clear(s.instant, s.n_r)
-    clear(s.terms, 2 * s.n_c)
+    for i in range(2 * s.n_c):
+        s.terms[i] = GONE * s.rows.atol
     for c in range(s.n_c):
         s.parting[c], s.jumped[c] = 0, 0.0
     measure_velocities(s.rows, after(s.y, s.n_q))
