@@ -34,7 +34,7 @@ class Standstill:
     """
 
     def __init__(self, span: tuple[float, float], h: float) -> None:
-        self.way, self.end = min(span[1] - span[0], h * STEPS), span[1]
+        self.way, self.end, self.h = min(span[1] - span[0], h * STEPS), span[1], h
         self.steps, self.since, self.words, self.crawls = 0, -math.inf, "", False
         self.first, self.begin, self.energy = 0, -math.inf, 0.0  # of those of any kind
 
@@ -45,7 +45,7 @@ class Standstill:
 
         impacts : how many there were from a time on;  energy : the kinetic energy now
         """
-        if steps >= max(2 * self.first, IMPACTS) and self.ever_faster(steps, now, energy()):
+        if steps >= max(2 * self.first, IMPACTS) and self.ever_faster(steps, now, impacts, energy()):
             return True
         onward, taken = now - self.since, steps - self.steps
         if taken < STEPS and onward < CRAWL * self.way:
@@ -56,12 +56,13 @@ class Standstill:
         self.steps, self.since = steps, now
         return self.crawls and onward < LEAST * self.way
 
-    def ever_faster(self, steps: int, now: float, energy: float) -> bool:
-        """Whether bodies go to and fro ever faster, and hardly take the time on."""
+    def ever_faster(self, steps: int, now: float, impacts: Callable[[float], int], energy: float) -> bool:
+        """Whether bodies go to and fro ever faster, and hardly take the time on: not where steps are short anyhow."""
         onward, taken, fed = now - self.begin, steps - self.first, energy >= GROWTH * self.energy
+        many = taken * (self.end - now) > TOO_MANY * onward and onward < CRAWL * taken * self.h
+        self.crawls = fed and many and PER_IMPACT * impacts(self.begin) >= taken
         self.first, self.begin, self.energy = steps, now, energy
         self.words = f"{told(taken, onward)}, as where bodies go to and fro between obstacles that close in,"
-        self.crawls = fed and taken * (self.end - now) > TOO_MANY * onward
         return self.crawls
 
 

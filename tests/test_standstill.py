@@ -158,3 +158,12 @@ def test_a_light_ball_between_heavy_ones_may_meet_them_a_million_times():
     m = simulate(scene, EventDriven())
     assert m.status == Status.DONE
     assert len(m.impacts) == many
+
+
+def test_many_short_steps_are_no_standstill_though_the_motion_gains_energy():
+    """A cam-follower begins at rest; by steps of 1e-7 s its first million ended the run."""
+    speed = itertools.count(1)
+    for h, span in ((1e-7, 100.0), (math.inf, 1e6)):
+        look = Standstill((0.0, span), h)
+        times = ((k, k * min(h, 1e-4)) for k in range(0, 20 * STEPS * STEPS // 100, 500_000))
+        assert not any(look.reached(k, t, lambda since: 0, lambda: 2.0 ** next(speed)) for k, t in times)
