@@ -13,10 +13,9 @@ import math
 from collections.abc import Callable
 
 STEPS = 20_000  # in a row
-IMPACTS = (
-    1_000_000  # steps and events of any kind: from so many on it is looked at, each time they have doubled,
-)
-GROWTH, TOO_MANY = 1.25, 3e8  # how the energy has grown meanwhile, and how many the rest would take
+# Steps and events of any kind: from so many on it is looked at, each time they have doubled
+IMPACTS = 1_000_000
+GROWTH, TOO_MANY = 1.25, 3e8  # of the kinetic energy meanwhile; how many more there would be
 PER_IMPACT = 100  # steps that the search for one may take
 # Of the span, or of what so many of the longest steps do: what they take the time on by at least, or crawl
 LEAST, CRAWL = 1e-6, 0.1

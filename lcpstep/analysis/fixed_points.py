@@ -21,10 +21,8 @@ Array = NDArray[np.float64]
 MAX_ITERATIONS = 30
 HALVINGS = 8  # of a Newton step that does not come closer
 CONVERGED = 1e-11  # residual, relative to the size of the point
-ROUNDED, CONTRACTION = (
-    1e-15,
-    0.5,
-)  # residual that rounding leaves; what it shrinks to while there are digits to gain
+# Residual that rounding leaves; what it shrinks to while there are digits to gain
+ROUNDED, CONTRACTION = 1e-15, 0.5
 STAGNATED = 1e-8  # a residual that rounding keeps from becoming smaller is accepted below this
 FAR = 1e3  # of the size of the guess: how much larger a point near it may be
 

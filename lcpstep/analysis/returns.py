@@ -19,16 +19,12 @@ from lcpstep.trajectory import Status
 
 Array = NDArray[np.float64]
 TOLERANCE = 1e-6  # of a return, relative to the size of the motion
-FAR, LEAST = (
-    0.1,
-    1e-4,
-)  # how little a motion far from zero moves, of the distance; what it is held to move at least
+# How little a motion far from zero moves, of the distance; what it is held to move at least
+FAR, LEAST = 0.1, 1e-4
 SAMPLES = 33  # of a period
 QUARTERS, FALLEN = 4, 0.5  # of a window; what a change falls to at least, from the first to the last of them
-RUNAWAY, GROWING = (
-    1e6,
-    10.0,
-)  # of a motion that grows without bound: times its starts; from quarter to quarter
+# Of a motion that grows without bound: times its starts; from quarter to quarter
+RUNAWAY, GROWING = 1e6, 10.0
 KICKS, KICK = 3, 1e-10  # rounds of a cycle on which it is tried, and with what share of the motion's size
 
 
