@@ -10,7 +10,7 @@ from lagrangian import Scene, checks
 from lagrangian.checks import Array, Callback
 from lagrangian.relations import in_python
 from lcpstep import callbacks
-from lcpstep.faults import forget
+from lcpstep.faults import fault, forget, note
 from lcpstep.kernels.function import Function
 
 
@@ -36,10 +36,12 @@ def evaluate(
     name: str, f: Callback, scene: Scene, at: tuple[float, Array, Array], shape: tuple[int, ...]
 ) -> Array:
     """Value of a callback at a state; ValueError names it where it is not finite, as Python finds it."""
-    out = np.full(shape, np.nan)
+    out, noted = np.full(shape, np.nan), fault()
     try:
         prepared(f, scene, shape)(*at, out)
     except Exception:  # in Python, which says below what it was
         out.fill(np.nan)
-    forget()
+    forget()  # what it has raised here, and nothing that the run has noted
+    if noted is not None:
+        note(noted)
     return out if np.all(np.isfinite(out)) else checks.evaluate(name, f, (*at, np.array(scene.p)), shape)
