@@ -18,6 +18,7 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget
 from lcpstep.hops import too_short
 from lcpstep.outrun import outrun
+from lcpstep.prepared import prepared
 from lcpstep.recording import Keep, Kept
 from lcpstep.refusals import refused
 from lcpstep.resolution import unresolved
@@ -203,8 +204,6 @@ def _with_error(run: Trajectory, wide: Trajectory, kept: Kept, seconds: float) -
 
 def _compare_first(scene: Scene) -> None:
     """ValueError where a derivative is wrong at the start, of a scene too large to be looked at when it was made."""
-    from lcpstep.prepared import prepared
-
     check_derivatives(scene, [(scene.t_span[0], np.array(scene.q0), np.array(scene.v0))], False, prepared)
     forget()
 
@@ -221,8 +220,6 @@ def _compare_derivatives(run: Trajectory) -> None:
         last = len(run.t) - 1
         for k in sorted({min(1, last), (last + 1) // 2, last}) if last >= 0 else ():
             yield float(run.t[k]), run.q[k], run.v[k]
-
-    from lcpstep.prepared import prepared
 
     try:
         check_derivatives(run.scene, states(), True, prepared)

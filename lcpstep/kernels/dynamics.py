@@ -12,7 +12,7 @@ from math import cos, pow, sin, sqrt
 import cython
 
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import clear, copy, product, size_of_product
+from lcpstep.kernels.vectors import clear, copy, product, product_between, size_of_product
 from lcpstep.pointers import Doubles, abs, after, inf, max, min
 
 # Fourth-order differences that stand in for a missing bias: the longest way they take; the third difference, relative
@@ -111,6 +111,17 @@ def gap_rates(m: Model, t: float, q: Doubles, v: Doubles, G: Doubles, g_t: Doubl
         g_t[c] = 0.0
     if m.gap_t.given:
         m.gap_t.fill(t, q, v, g_t)
+
+
+def gap_velocities(m: Model, t: float, q: Doubles, v: Doubles, G: Doubles, g_t: Doubles, u: Doubles) -> None:
+    """U = G v + g_t, right after the `gaps` of the same state; rows that change are left in G, g_t."""
+    if m.flat:  # the obstacle's velocity came with the gap
+        for c in range(m.n_c):
+            u[c] = product_between(m.G, v, c, m.n_q, m.G_ends) - m.motion_now[3 * c + 1]
+        return
+    gap_rates(m, t, q, v, G, g_t)
+    for c in range(m.n_c):
+        u[c] = product(G, v, c, m.n_q) + g_t[c]
 
 
 def bias(

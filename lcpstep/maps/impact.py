@@ -74,10 +74,8 @@ class ImpactMap:
             scene = replace(self.scene, q0=q, v0=v, t_span=(t, t + wait))
             for method in bounded(self.method) if isinstance(self.method, EventDriven) else (self.method,):
                 run = simulate(scene, method, keep="impacts")
-                hits, cut = (
-                    np.flatnonzero(run.impacts.kind == Kind.IMPACT),
-                    run.status == Status.TOO_MANY_EVENTS,
-                )
+                hits = np.flatnonzero(run.impacts.kind == Kind.IMPACT)
+                cut = run.status == Status.TOO_MANY_EVENTS
                 if len(hits) > 1 and not (cut and run.t[-1] <= run.impacts.time[hits[1]]):
                     return self._point(run, int(hits[1]))
                 if not cut:

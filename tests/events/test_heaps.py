@@ -36,19 +36,13 @@ def normals(t, q, v, p, out):
 
 
 def tangents(t, q, v, p, out):
-    n, k = len(q) // 3, 0
-    out[:] = 0.0
-    for i in range(n):
-        for j in range(i + 1, n):
-            x, y = q[3 * i] - q[3 * j], q[3 * i + 1] - q[3 * j + 1]
-            d = np.hypot(x, y)
-            out[k, 3 * i], out[k, 3 * i + 1], out[k, 3 * j], out[k, 3 * j + 1] = -y / d, x / d, y / d, -x / d
-            out[k, 3 * i + 2] = out[k, 3 * j + 2] = -R
-            k += 1
-    for i in range(n):
-        out[k, 3 * i + 1], out[k + 1, 3 * i + 1], out[k + 2, 3 * i] = 1.0, -1.0, -1.0
-        out[k, 3 * i + 2] = out[k + 1, 3 * i + 2] = out[k + 2, 3 * i + 2] = -R
-        k += 3
+    """The normals, turned by a right angle, of each disc that they move; and its own turning."""
+    normals(t, q, v, p, out)
+    for k in range(out.shape[0]):
+        for i in range(0, len(q), 3):
+            x, y = out[k, i], out[k, i + 1]
+            out[k, i], out[k, i + 1] = -y, x
+            out[k, i + 2] = -R if x != 0.0 or y != 0.0 else 0.0
 
 
 def heap(seed):

@@ -18,7 +18,7 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles
-from lcpstep.kernels.dynamics import gap_rates, gaps, obstacle
+from lcpstep.kernels.dynamics import gap_rates, gap_velocities, gaps, obstacle
 from lcpstep.kernels.linear import grow_factor, solve_factored
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.turn import Turn
@@ -276,13 +276,7 @@ def contacts_at(
     """Gaps and gap velocities at tau after the base of the piece."""
     state_at(m, plan, w, z, t, tau)
     gaps(m, t + tau, z.q, z.v, g)
-    if m.flat:
-        for c in range(w.n_c):
-            u[c] = product_between(m.G, z.v, c, w.n_q, m.G_ends) - m.motion_now[3 * c + 1]
-        return
-    gap_rates(m, t + tau, z.q, z.v, w.G_try, w.gap_t_try)
-    for c in range(w.n_c):
-        u[c] = product(w.G_try, z.v, c, w.n_q) + w.gap_t_try[c]
+    gap_velocities(m, t + tau, z.q, z.v, w.G_try, w.gap_t_try, u)
 
 
 def force_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float) -> bool:

@@ -12,6 +12,7 @@ from lagrangian import Scene
 from lcpstep.kernels.clock import Clock
 from lcpstep.kernels.dynamics import moves, varies
 from lcpstep.kernels.model import Model
+from lcpstep.model import ends
 from lcpstep.stepping.extent import extent, is_stiff
 from lcpstep.stepping.pieces.carried import displaced
 from lcpstep.stepping.pieces.codes import ROUNDING
@@ -131,7 +132,7 @@ def ranges(a: dict[str, Array]) -> dict[str, Any]:
     G = np.abs(a["G"])
     MG = G @ np.abs(a["M_inverse"])
     found = {}
-    for what, pattern in (("coordinate", MG + G > 0.0), ("contact", MG @ G.T > 0.0)):
-        found[f"first_{what}"] = pattern.argmax(axis=1)
-        found[f"last_{what}"] = pattern.shape[1] - 1 - pattern[:, ::-1].argmax(axis=1)
+    for what, matrix in (("coordinate", MG + G), ("contact", MG @ G.T)):
+        begin, end = ends(matrix).T
+        found |= {f"first_{what}": begin, f"last_{what}": end - 1}
     return found

@@ -5,9 +5,9 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
-from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, total_force
+from lcpstep.kernels.dynamics import external_force, gap_velocities, gaps, total_force
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import copy, finite, product, product_between
+from lcpstep.kernels.vectors import copy, finite
 from lcpstep.pointers import min
 from lcpstep.stepping.steps import LATE
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINITE
@@ -93,17 +93,10 @@ def end_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float, e
 
 def measure(m: Model, s: State, c: Rows, t: float) -> None:
     """Gaps and gap velocities of the current state."""
-    n_c = s.n_c
-    if n_c == 0:
+    if s.n_c == 0:
         return
     gaps(m, t, s.q, s.v, s.g)
-    if m.flat:  # the obstacle's velocity came with the gap
-        for i in range(n_c):
-            s.u[i] = product_between(m.G, s.v, i, s.n_q, m.G_ends) - m.motion_now[3 * i + 1]
-        return
-    gap_rates(m, t, s.q, s.v, c.H, c.H_t)
-    for i in range(n_c):
-        s.u[i] = product(c.H, s.v, i, s.n_q) + c.H_t[i]
+    gap_velocities(m, t, s.q, s.v, c.H, c.H_t, s.u)
 
 
 def keep_times(h: float, s: State, t: float, t_next: float) -> None:
