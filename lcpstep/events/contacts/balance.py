@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.codes import OPEN
+from lcpstep.events.codes import OPEN, STICKS
 from lcpstep.events.contacts.equations import force_noise, measure
 from lcpstep.events.contacts.modes import adopt_modes, decide
 from lcpstep.events.contacts.state import Rubbing
@@ -25,12 +25,20 @@ MOMENT, SHORTEST, SHORTER = 1e-4, 1e-9, 0.1  # of the next step; and how much sh
 DOUBTFUL = 10.0  # of what an acceleration changes by in a moment: larger ones are no rounding
 
 
-def opens_any(s: Rubbing, pressed: bool) -> bool:
-    """Whether a closed contact opens, by `decide`; or one that a force has `pressed` in the modes at hand."""
+def opens_any(s: Rubbing) -> bool:
+    """Whether a closed contact opens, by `decide`."""
     some = False
     for c in range(s.n_c):
-        opens = s.mode[c] != OPEN and s.new_mode[c] == OPEN
-        some = some or (opens and (not pressed or s.loaded[c] == 1))
+        some = some or (s.mode[c] != OPEN and s.new_mode[c] == OPEN)
+    return some
+
+
+def changes_any(s: Rubbing) -> bool:
+    """Whether a contact that a force presses, or holds at rest, in the modes at hand no longer does by `decide`."""
+    some = False
+    for c in range(s.n_c):
+        opens, slips = s.new_mode[c] == OPEN, s.mode[c] == STICKS and s.new_mode[c] != STICKS
+        some = some or (s.mode[c] != OPEN and s.loaded[c] == 1 and (opens or slips))
     return some
 
 

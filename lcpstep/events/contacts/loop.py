@@ -25,7 +25,7 @@ from lcpstep.events.codes import (
     STAYS_CLOSED,
     SWITCH,
 )
-from lcpstep.events.contacts.balance import opens_any, reconsider
+from lcpstep.events.contacts.balance import changes_any, opens_any, reconsider
 from lcpstep.events.contacts.chatter import close_small
 from lcpstep.events.contacts.corners import turn_corner
 from lcpstep.events.contacts.equations import let_stick, measure
@@ -174,7 +174,7 @@ def seek_modes(s: Rubbing, t: float) -> int:
     code = decide(s)
     if s.rows.n_kept < s.n_j and contradict(s):
         return JOINTS_FAILED
-    if code == DONE and opens_any(s, False):
+    if code == DONE and opens_any(s):
         code = reconsider(s, t, longest)
     if code == DONE and undecided(s):
         copy_indices(s.tried, s.new_mode, s.n_c)
@@ -190,7 +190,7 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
     """The modes just after the base time, at which the forces leave some of them open; a status.
 
     A contact whose force begins at zero is decided by the first force that can be told from zero, unless another that
-    is pressed now is no longer there: that opens later, as its own guard says, and decides about all anew.
+    is pressed now is no longer there, or slips: it does so later, as its own guard says, and decides about all anew.
     """
     ahead = LOOK_AHEAD * longest
     while 0.0 < ahead <= longest:
@@ -204,7 +204,7 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
         if code != DONE:
             return code
         open_question = undecided(s)
-        if opens_any(s, True):
+        if changes_any(s):
             for c in range(s.n_c):  # the modes at hand in the place of those decided
                 s.new_mode[c], s.new_direction[c], s.new_loaded[c] = s.mode[c], s.direction[c], s.loaded[c]
             break
