@@ -70,12 +70,17 @@ def energy(run):
     return 0.5 * np.sum(run.v * (run.v @ M), axis=1) - run.q @ f
 
 
-@pytest.mark.parametrize("seed", [17, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 7, 26))])
+@pytest.mark.parametrize("seed", [17, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 7, 26, 45, 52))])
 def test_heaps_settle_by_every_method_alike(seed):
-    """Hops faded until numbers had no digits, and their impacts no answer (2)."""
+    """Hops faded until numbers had no digits, and their impacts no answer (2); bodies that only others press hopped on
+    by rounding (45); one that falls along a wall, unpressed, had what sticks decided by forces to come (52).
+
+    Heap 45 is compared before 0.6 s, for rounding makes 1e-2 of itself later: hops that meet are struck together.
+    """
     true = simulate(heap(seed), EventDriven(1e-9, 1e-9))
-    for method in (Located(1e-3), Located(4e-3, order=4), Located(1e-2, order=4, tolerance=1e-6)):
+    for method in (Located(5e-4), Located(4e-3, order=4), Located(1e-2, order=4, tolerance=1e-6)):
         run = simulate(heap(seed), method)
         assert run.status == true.status == Status.DONE
         assert np.max(np.diff(energy(run))) < 1e-6
-        np.testing.assert_allclose(run.q[-1], true.q[-1], rtol=0, atol=3e-6)
+        t = 0.6 if seed == 45 else 1.0
+        np.testing.assert_allclose(run.at(t)[0], true.at(t)[0], rtol=0, atol=3e-6)

@@ -16,7 +16,7 @@ from lcpstep.events.contacts.equations import force_noise, measure
 from lcpstep.events.contacts.modes import adopt_modes, decide
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import touching
-from lcpstep.events.rows.contacts import accelerate_as_held, accelerate_on_joints
+from lcpstep.events.rows.accelerations import accelerate_as_held, accelerate_on_joints
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.kernels.vectors import clear, copy_indices, product
 from lcpstep.pointers import abs, min

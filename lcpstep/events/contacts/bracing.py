@@ -14,7 +14,8 @@ import cython
 from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
 from lcpstep.events.contacts.equations import force_noise, size_of_loads
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import accelerate_as_held, hold_modes
+from lcpstep.events.rows.accelerations import accelerate_as_held
+from lcpstep.events.rows.contacts import hold_modes
 from lcpstep.events.rows.equations import size_of_acceleration
 from lcpstep.events.rows.held import is_held
 from lcpstep.kernels.clock import NOISE

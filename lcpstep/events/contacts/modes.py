@@ -26,7 +26,8 @@ from lcpstep.events.contacts.equations import let_stick
 from lcpstep.events.contacts.leaning import stand, stand_alone
 from lcpstep.events.contacts.several import opened_or_closed
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import accelerate_on_joints, hold_modes
+from lcpstep.events.rows.accelerations import accelerate_on_joints
+from lcpstep.events.rows.contacts import hold_modes
 from lcpstep.events.rows.equations import size_of_acceleration
 from lcpstep.events.rows.keep import tell
 from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear

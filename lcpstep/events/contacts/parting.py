@@ -13,7 +13,8 @@ from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.equations import measure, renew_friction
 from lcpstep.events.contacts.modes import decide
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import accelerate_on_joints, gap_tolerance, hold_modes
+from lcpstep.events.rows.accelerations import accelerate_on_joints
+from lcpstep.events.rows.contacts import gap_tolerance, hold_modes
 from lcpstep.events.rows.held import constrain, hold_joints
 from lcpstep.events.rows.on_joints import is_led
 from lcpstep.kernels.status import DONE

@@ -24,7 +24,7 @@ from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.together import gap_rounding
-from lcpstep.kernels.vectors import add, clear, copy, product
+from lcpstep.kernels.vectors import add, clear, product
 from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
 
 STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
@@ -37,7 +37,8 @@ class Contacts(Rows):
     mapped              whether what forces do is known for the rows held, see `contacts.held`
     problem             the complementarity problem at hand, of an impact or of forces
     q, v, a : (n_q,)    state at hand, and acceleration with constraints;  multiplier : (n_r,)   forces by row
-    dv : (n_q,), effect : (n_q + n_r,)   velocities on trial; such an acceleration and its multipliers
+    dv, each : (n_q,), effect : (n_q + n_r,)   velocities on trial; accelerations by the forces, their signs left
+                        aside; such an acceleration and its multipliers
     gap, velocity : (n_r,)   of rows at the state last measured;  curve : (n_c,)   gap accelerations
     impulse : (n_r,)    contacts, tangents, joints, since the last kept state
     turn_velocity, turn_impulse : (n_r,)   velocities some impacts of this instant ago; impulses since then
@@ -60,10 +61,11 @@ class Contacts(Rows):
         n, n_c, r = self.n_q, self.n_c, self.n_r
         self.next, self.culprit, self.mapped = BEGIN, -1, False
         self.problem = ContactProblem(np.zeros(n_c), self.n_t > 0, r, False)
-        self.contact_numbers = np.zeros(3 * n + 7 * r + 12 * n_c)
+        self.contact_numbers = np.zeros(4 * n + 7 * r + 12 * n_c)
         self.a = doubles(self.contact_numbers)
         self.dv = after(self.a, n)
-        self.effect = after(self.dv, n)
+        self.each = after(self.dv, n)
+        self.effect = after(self.each, n)
         self.multiplier = after(self.effect, n)
         self.gap = after(self.multiplier, r)
         self.velocity = after(self.gap, r)
@@ -148,15 +150,27 @@ def add_impulse(s: Contacts, i: int, p: float) -> None:
 def measure_velocities(s: Contacts, v: Doubles) -> None:
     """Velocities R v + rate of all rows; `terms` of contacts and tangents grow to their rounding.
 
-    Nor is more known of one than what forces make in a time that cannot be told: what is left at rest means nothing.
+    Nor is more known of one than what forces make in a time that cannot be told, those of contacts among them: what
+    is left at rest means nothing.
     """
     moment = s.untold(0.0)
+    size_up(s)
     for i in range(s.n_r):
         s.velocity[i] = product(s.R, v, i, s.n_q) + s.rate[i]
     for i in range(s.n_c + s.n_t):
         k = s.n_j + i
-        unknown = moment * size_of(s, k, 0.0, s.a_free)
+        unknown = moment * size_of(s, k, 0.0, s.each)
         s.terms[i] = max(s.terms[i], NOISE * size_of(s, k, s.rate[k], v) + unknown)
+
+
+def size_up(s: Contacts) -> None:
+    """How large the accelerations are of which forces that balance each other are the sum, into `each`."""
+    for j in range(s.n_q):
+        s.each[j] = abs(s.a_free[j])
+    for i in range(s.n_r):
+        if s.multiplier[i] != 0.0:
+            for j in range(s.n_q):
+                s.each[j] += abs(s.MR[i * s.n_q + j] * s.multiplier[i])
 
 
 def gap_tolerance(s: Contacts, c: int) -> float:
@@ -242,20 +256,6 @@ def hold_leaning(s: Contacts) -> None:
     for c in range(s.n_c):
         if s.mode[c] == LEANS and s.loaded[c] == 1 and not is_held(s, s.n_j + c):
             hold_row(s, s.n_j + c + s.n_c)
-
-
-def accelerate_on_joints(s: Contacts) -> None:
-    """The acceleration with the joints alone held, into `a`; everything must be measured."""
-    copy(s.a, s.a_free, s.n_q)
-    hold_joints(s)
-    constrain(s, s.a, s.bias)
-
-
-def accelerate_as_held(s: Contacts) -> None:
-    """The acceleration with the rows held, into `a`, and multipliers by row; everything must be measured."""
-    copy(s.a, s.a_free, s.n_q)
-    constrain(s, s.a, s.bias)
-    list_multipliers(s)
 
 
 def list_multipliers(s: Contacts) -> None:
