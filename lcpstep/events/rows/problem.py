@@ -14,8 +14,8 @@ from lcpstep.events.rows.equations import size_of_acceleration
 from lcpstep.events.rows.loads import unload
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import solve_contacts
-from lcpstep.kernels.vectors import clear
-from lcpstep.pointers import Indices, after
+from lcpstep.kernels.vectors import clear, largest
+from lcpstep.pointers import Indices, abs, after
 
 
 def row_of(s: Contacts, a: int, n_a: int) -> int:
@@ -69,13 +69,23 @@ def solve_forces(s: Contacts, n_a: int, n_f: int) -> bool:
     """Forces for the accelerations in `rate`; where there are none, for those that rounding does not tell from them.
 
     What is held from both sides has two accelerations that are one but for its sign, each with a rounding of its own.
+    Of bodies that lean on each other one may have so small an acceleration that no digit of it is left in the forces.
     """
     if solve_contacts(s.problem, n_a, n_f):
         return True
     allow(s, n_a, 1.0)
     found = solve_contacts(s.problem, n_a, n_f)
     allow(s, n_a, -1.0)
-    return found
+    return found or (leave_out_small(s, n_a + n_f) and solve_contacts(s.problem, n_a, n_f))
+
+
+def leave_out_small(s: Contacts, m: int) -> bool:
+    """Take accelerations for none that are rounding of the largest; whether there are any."""
+    none, some = NOISE * largest(s.problem.rate, 0.0, m), False
+    for a in range(m):
+        if s.problem.rate[a] != 0.0 and abs(s.problem.rate[a]) <= none:
+            s.problem.rate[a], some = 0.0, True
+    return some
 
 
 def allow(s: Contacts, n_a: int, sign: float) -> None:
