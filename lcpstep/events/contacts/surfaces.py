@@ -15,7 +15,7 @@ from lcpstep.kernels.vectors import clear, copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, max, min
 
 FREE = 1e-6  # relative: what a row can move of itself while others are held, or it depends on them
-TOGETHER = 1e-3  # of the tolerance of a gap
+TOGETHER = 1e-3  # of the tolerance of a gap, and of a hop
 GONE = 1e-90  # of the tolerance: what is left of a motion that has died away
 SURE = 0.5  # of a gap: by how much its slope may change over Newton's step to zero if there is one
 LATE = 8.0  # roundings of a time: what two events must be apart to be told from one
@@ -146,10 +146,11 @@ def find_touching(s: Rubbing) -> None:
 def find_coming(s: Rubbing, c: int) -> None:
     """Mark those too that close before it can be told when contact c, which has come to its surface, has done so.
 
-    A slow one crosses in long what its gap is known to: a corner that it is part of is an impact of all its walls.
+    A slow one crosses in long what its gap is known to: a corner that it is part of is an impact of all its walls. Of
+    a hop's end as little of the hop is not known.
     """
     u, share = s.velocity[s.n_j + c], share_left(s)
-    moment = nearly(s, c, share) / -u if u < 0.0 else 0.0
+    moment = min(nearly(s, c, share) / -u, TOGETHER * (s.clock.t0 - s.rows.struck[c])) if u < 0.0 else 0.0
     for d in range(s.n_c):
         way = min(-s.velocity[s.n_j + d] * moment, share * gap_tolerance(s.rows, d))
         if s.gap[s.n_j + d] <= way:
