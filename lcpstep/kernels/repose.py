@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.kernels.coulomb import ContactProblem, motion_of
+from lcpstep.kernels.coulomb import DEGENERATE, ROUNDING, ContactProblem, motion_of
 from lcpstep.kernels.vectors import clear
 from lcpstep.lcp.kernel import solve_small
 from lcpstep.pointers import Doubles, abs
@@ -37,7 +37,7 @@ def stay(c: ContactProblem, n_a: int, n_f: int) -> bool:
     gather(c, n_a, n_f)
     for i in range(m):
         a = contact_of(c, i, n_a)
-        if c.z[a] > 0.0 and moves(c, c.z, i, m):
+        if c.z[a] > 0.0 and not is_kept(c, a, i, m):
             c.sum[a] = 1.0
     while infects(c, n_a, n_f):
         pass
@@ -90,6 +90,25 @@ def moves(c: ContactProblem, p: Doubles, i: int, m: int) -> bool:
     """Whether the impulses p leave the row of unknown i in motion."""
     u, size = motion_of(c, p, i, m)
     return abs(u) > AT_REST * size
+
+
+def is_kept(c: ContactProblem, a: int, i: int, m: int) -> bool:
+    """Whether z leaves row i of contact a at rest, up to the rounding of an edge: there mu T is a term beside N."""
+    u, size = motion_of(c, c.z, i, m)
+    _, beside = motion_of(c, c.z, a, m)
+    return abs(u) <= AT_REST * size or (i != a and c.mu[c.ids[a]] * abs(u) <= ROUNDING * beside)
+
+
+def is_loaded(c: ContactProblem, a: int, n_a: int, n_f: int) -> bool:
+    """Whether contact a is pressed, or one that shares its normal is and may leave it any part of the load."""
+    if c.impulse[a] > 0.0:
+        return True
+    m, shares = n_a + n_f, False
+    for b in range(n_a):
+        if c.mobility[a * m + b] > 0.0 and c.impulse[b] > 0.0:
+            own = c.mobility[a * m + a] * c.mobility[b * m + b]
+            shares = shares or own - c.mobility[a * m + b] * c.mobility[b * m + a] <= DEGENERATE * own
+    return shares and not moves(c, c.impulse, a, m)
 
 
 def infects(c: ContactProblem, n_a: int, n_f: int) -> bool:

@@ -12,7 +12,7 @@ import cython
 
 from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.coulomb import ContactProblem, motion_of, solve_contacts
-from lcpstep.kernels.repose import infects, moves, stay
+from lcpstep.kernels.repose import infects, is_loaded, moves, stay
 from lcpstep.kernels.vectors import clear
 from lcpstep.pointers import Doubles, Indices
 
@@ -82,7 +82,7 @@ def rest_where_possible(c: ContactProblem, sticks: Indices, sliding: Doubles, n_
         i = c.ids[c.carrier[f]]
         u, _ = motion_of(c, c.impulse, n_a + f, n_a + n_f)
         was = sticks[i] == 1 or u * sliding[i] <= 0.0
-        was = was and c.impulse[c.carrier[f]] > 0.0
+        was = was and is_loaded(c, c.carrier[f], n_a, n_f)
         some = some or (was and moves(c, c.impulse, n_a + f, n_a + n_f))
     if some:
         clear(c.sum, n_a)

@@ -41,7 +41,7 @@ from lcpstep.events.rows.problem import (
 )
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import motion_of
-from lcpstep.kernels.repose import moves, stay
+from lcpstep.kernels.repose import is_loaded, moves, stay
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 from lcpstep.pointers import abs, max
 
@@ -89,7 +89,7 @@ def rest_where_possible(s: Rubbing, n_a: int, n_f: int) -> None:
     """Take forces that leave what is at rest there for those found, where there are such and these do not."""
     some = False
     for f in range(n_f):
-        pressed = s.problem.impulse[s.problem.carrier[f]] > 0.0
+        pressed = is_loaded(s.problem, s.problem.carrier[f], n_a, n_f)
         some = some or (pressed and moves(s.problem, s.problem.impulse, n_a + f, n_a + n_f))
     if some:
         for a in range(n_a):
@@ -151,10 +151,12 @@ def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:
             s.new_mode[c] = STICKS
         elif limit > 0.0:
             s.new_direction[c] = 1.0 if force < 0.0 else -1.0
-            if abs(rate) <= LEANING * size_of_coupled(s, n_a + f, n_a, n_f):
+            if is_still(s, n_a + f, rate, n_a, n_f):
                 s.new_mode[c] = LEANS
             elif rate * s.new_direction[c] < 0.0:  # large forces have hidden that it does not slide
                 s.new_mode[c] = STICKS
+        elif is_still(s, n_a + f, rate, n_a, n_f) and is_loaded(s.problem, k, n_a, n_f):
+            s.new_mode[c] = STICKS  # its share of the load begins at zero, as its friction does
         else:
             s.new_direction[c] = 1.0 if rate >= 0.0 else -1.0
 
@@ -211,6 +213,11 @@ def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     for b in range(m):
         size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
     return size
+
+
+def is_still(s: Rubbing, a: int, rate: float, n_a: int, n_f: int) -> bool:
+    """Whether an acceleration of unknown a's row is no more than what solving for the forces leaves of none."""
+    return abs(rate) <= LEANING * size_of_coupled(s, a, n_a, n_f)
 
 
 def size_of_coupled(s: Rubbing, a: int, n_a: int, n_f: int) -> float:

@@ -12,7 +12,6 @@ import cython
 from lcpstep.kernels.coulomb import DEGENERATE, motion_of, solve_contacts
 from lcpstep.kernels.energetic import strike_in_turn
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.repose import AT_REST
 from lcpstep.kernels.stiction import rest_where_possible, solve_steps
 from lcpstep.kernels.vectors import finite, largest, product, size_of_product
 from lcpstep.pointers import Doubles, Indices, abs, after, max
@@ -184,7 +183,7 @@ def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
         u = c.T_t[i] + product(c.T, s.next_v, i, s.n_q)
         _, size = motion_of(c.problem, c.problem.impulse, n_a + f, n_a + n_f)
         size += size_of_rate(c, s.next_v, c.n_c + i, s.n_q)
-        s.sticks[i] = 1 if abs(u) <= AT_REST * size else 0
+        s.sticks[i] = 1 if abs(u) <= NO_APPROACH * size else 0
 
 
 def take_part(c: Rows, n_a: int) -> None:
