@@ -50,7 +50,8 @@ class Coulomb(Pickled):
     mu : (n_c,) or one number for all contacts, mu >= 0   coefficient of friction [-]; 0 for a contact without;
         or a callback f(t, q, u, p, out) filling out (n_c,) from the sliding velocities u (n_c,), 0 of what sticks
     tangent : (n_c, n_q) constant matrix, dense or scipy.sparse, or callback filling out (n_c, n_q)   T [-]
-        T v is a velocity in m/s, as gaps are distances in m: else mu means another coefficient.
+        T v is a velocity in m/s, as gaps are distances in m: else mu means another coefficient. A function of time
+        and coordinates: a contact has one direction of friction, in space as well.
     slip : (n_c,) constants or a Harmonic where the tangent is constant, callback filling out (n_c,) where it is one
         Sliding velocity at v = 0 [m/s]: a belt that runs with velocity b along the tangent has slip = -b.
         None for obstacles at rest.
@@ -86,7 +87,8 @@ class Coulomb(Pickled):
             tangent = read("friction.tangent", tangent)
             if tangent.shape[0] != n_c:
                 raise ValueError(
-                    f"friction.tangent: expected {n_c} rows, one per contact, got shape {tangent.shape}"
+                    f"friction.tangent: expected {n_c} rows, one per contact, got shape {tangent.shape}; friction "
+                    "acts along one direction a contact"
                 )
         slip = self.slip
         if slip is not None and callable(slip) != callable(tangent):

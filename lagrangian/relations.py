@@ -111,6 +111,7 @@ def _functions(scene: Scene) -> list[Any]:
             found += [system.force, system.force_q, system.force_v]
     for _, c in _constraints(scene):
         found += [c.motion] if isinstance(c, LinearContacts) else [c.gap, c.gap_t, c.bias]
+    found += [f for _, f, _ in _of_friction(scene) if callable(f)]
     for c in (scene.contacts, scene.joints):
         found += [getattr(c, "jacobian", None)]
     return found
@@ -126,7 +127,10 @@ def _check_mass(ask: Asked, at: State) -> None:
 
 
 def _check_arguments(ask: Asked, at: State) -> None:
-    """ValueError where what moves by itself depends on the state, or a gap on velocities: no method asks for that."""
+    """ValueError where what moves by itself depends on the state, or a gap, tangent or belt on velocities.
+
+    No method asks for that: a tangent that follows the sliding never sees it turn about, and holds nothing at rest.
+    """
     (t, q, _), (_, beside, faster) = at, _beside(ask, at, 0.0)
     for name, f, shape in _moving(ask.scene):
         _check_same(name, "time", ask.evaluated(f, shape), at, (t, beside, faster))
@@ -134,6 +138,9 @@ def _check_arguments(ask: Asked, at: State) -> None:
         if not isinstance(c, LinearContacts):
             gap = ask.evaluated(c.gap, (c.n_c,))
             _check_same(f"{name}.gap", "time and coordinates", gap, at, (t, q, faster))
+    for name, f, shape in _of_friction(ask.scene):
+        if callable(f):
+            _check_same(name, "time and coordinates", ask.evaluated(f, shape), at, (t, q, faster))
 
 
 def _check_same(name: str, allowed: str, f: Callable[[State], Array], at: State, other: State) -> None:
@@ -154,6 +161,14 @@ def _moving(scene: Scene) -> Iterator[tuple[str, Callback | None, tuple[int, int
     for name, c in _constraints(scene):
         if isinstance(c, LinearContacts):
             yield f"{name}.motion", c.motion, (c.n_c, 3)
+
+
+def _of_friction(scene: Scene) -> Iterator[tuple[str, Any, tuple[int, ...]]]:
+    """Tangents and belts of the contacts, with the shape that they fill where they are functions."""
+    friction = None if scene.contacts is None else scene.contacts.friction
+    if friction is not None:
+        yield "friction.tangent", friction.tangent, (scene.n_c, scene.n_q)
+        yield "friction.slip", friction.slip, (scene.n_c,)
 
 
 def _constraints(scene: Scene) -> Iterator[tuple[str, Any]]:

@@ -22,6 +22,7 @@ from lcpstep.prepared import prepared
 from lcpstep.recording import Keep, Kept
 from lcpstep.refusals import refused
 from lcpstep.resolution import unresolved
+from lcpstep.shared_normals import slide_on_one
 from lcpstep.trajectory import Status
 from lcpstep.turned import turned
 
@@ -92,7 +93,8 @@ def simulate(
         end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large, where an
         obstacle leaves no room to it, or its gap has no gradient where it is met, where steps are too long for the
         forces that it meets, lose energy, turn by more than a radian what holds the motion, see no period of its
-        oscillations or of its hops, or make it faster than forces and obstacles could
+        oscillations or of its hops, or make it faster than forces and obstacles could, or where contacts slide that
+        share a normal, with friction in two directions
 
     Raises
     ------
@@ -169,6 +171,7 @@ def _looked_over(run: Trajectory) -> Trajectory:
             or turned(run)
             or outrun(run)
             or too_short(run)
+            or slide_on_one(run)
         )
     except KeyboardInterrupt:
         unseen = replace(run, message=f"{run.message}; interrupted before its states were looked over")

@@ -1,0 +1,96 @@
+"""Whether two contacts of a finished run slide that share a normal, but not the direction of their friction.
+
+    N_c ~ N_d,    g_c = g_d,    rank (N_c, T_c, T_d) = 3
+
+Friction acts along one direction a contact. Two of them at one place hold what sticks in both directions of a surface
+in space, whatever load each has; as soon as one slides, friction is in proportion to its load, which no law shares
+out, and no circle of friction comes of it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import LinearContacts, Scene
+from lcpstep.trajectory import Trajectory
+
+Array = NDArray[np.float64]
+LOOKS = 32  # kept states at which sliding velocities are looked at
+PLACES = 3  # of these, at which normals that are functions are compared
+SAME = 1e-12  # of a normal's squared size: what another one has across it
+ALIKE = 1e-6  # of a tangent's size: what it has beside the normal and another tangent
+SLIDES = 5e-2  # of the terms of sliding velocities: steps leave less of what sticks
+
+
+def slide_on_one(run: Trajectory) -> str:
+    """Which contacts do, and when, in words; "" where none was seen."""
+    contacts: Any = run.scene.contacts
+    if contacts is None or contacts.friction is None or contacts.n_c < 2 or len(run.t) < 2:
+        return ""
+    if getattr(contacts, "sparse", False):
+        return ""
+    looked = np.unique(np.linspace(1, len(run.t) - 1, LOOKS).astype(int))
+    places = looked[:1] if isinstance(contacts, LinearContacts) else looked[:: max(1, len(looked) // PLACES)]
+    try:
+        pairs = {x for k in places for x in _pairs(run.scene, *_state(run, k))}
+        for k in looked if pairs else ():
+            for c, d in sorted(pairs):
+                if run.impulse[k, c] + run.impulse[k, d] > 0.0 and _slides(run.scene, _state(run, k), c, d):
+                    return (
+                        f"contacts {c} and {d} share their normal, and not their tangents, and slide at t = "
+                        f"{run.t[k]:.9g} s: no law says which of them carries the load, so that their friction is "
+                        "one of many; it acts along one direction a contact"
+                    )
+    except ValueError:  # a callback that fails at a state which the run has not asked it for
+        return ""
+    return ""
+
+
+def _state(run: Trajectory, k: int) -> tuple[float, Array, Array]:
+    """Time, coordinates and velocities of a kept state."""
+    return float(run.t[k]), run.q[k].copy(), run.v[k].copy()
+
+
+def _pairs(scene: Scene, t: float, q: Array, v: Array) -> list[tuple[int, int]]:
+    """Rough contacts at one place with one normal, of which the rows of friction differ."""
+    contacts, p = scene.contacts, np.array(scene.p)
+    assert contacts is not None
+    assert contacts.friction is not None
+    friction, N = contacts.friction, np.asarray(contacts.normals(t, q, v, p))
+    rough = np.full(len(N), True) if callable(friction.mu) else np.asarray(friction.mu) > 0.0
+    sizes = np.sum(N * N, axis=1)
+    across = np.outer(sizes, sizes) - np.maximum(N @ N.T, 0.0) ** 2
+    near = (across <= SAME * np.outer(sizes, sizes)) & np.outer(rough, rough) & (np.outer(sizes, sizes) > 0.0)
+    if np.count_nonzero(near) <= np.count_nonzero(np.diag(near)):
+        return []
+    g, T = scene.gap(t, q, v)[0], np.asarray(friction.tangents((t, q, v, p), len(N)))
+    g = g / np.sqrt(np.maximum(sizes, np.finfo(float).tiny))
+    scale = 1e-8 * max(1.0, float(np.max(np.abs(q))))
+    return [
+        (c, d)
+        for c, d in itertools.combinations(range(len(N)), 2)
+        if near[c, d] and abs(g[c] - g[d]) <= scale and _differ(N[c], T[c], T[d])
+    ]
+
+
+def _differ(N: Array, T: Array, other: Array) -> bool:
+    """Whether two tangents are more than one direction beside the normal."""
+    n = N / np.linalg.norm(N)
+    one, two = T - (T @ n) * n, other - (other @ n) * n
+    sizes = np.linalg.norm(one) * np.linalg.norm(two)
+    return bool(sizes > 0.0 and abs(one @ two) < (1.0 - ALIKE) * sizes)
+
+
+def _slides(scene: Scene, at: tuple[float, Array, Array], c: int, d: int) -> bool:
+    """Whether one of the two has a sliding velocity."""
+    contacts, p = scene.contacts, np.array(scene.p)
+    assert contacts is not None
+    assert contacts.friction is not None
+    u = contacts.friction.sliding(*at, p, contacts.n_c)
+    T = np.asarray(contacts.friction.tangents((*at, p), contacts.n_c))
+    terms = np.abs(T) @ np.abs(at[2]) + np.abs(u - T @ at[2])
+    return bool(max(abs(u[c]), abs(u[d])) > SLIDES * max(terms[c], terms[d]))
