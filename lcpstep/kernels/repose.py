@@ -37,7 +37,7 @@ def stay(c: ContactProblem, n_a: int, n_f: int) -> bool:
     gather(c, n_a, n_f)
     for i in range(m):
         a = contact_of(c, i, n_a)
-        if c.z[a] > 0.0 and not is_kept(c, a, i, m):
+        if c.z[a] > 0.0 and not is_kept(c, c.z, a, i, m):
             c.sum[a] = 1.0
     while infects(c, n_a, n_f):
         pass
@@ -92,11 +92,16 @@ def moves(c: ContactProblem, p: Doubles, i: int, m: int) -> bool:
     return abs(u) > AT_REST * size
 
 
-def is_kept(c: ContactProblem, a: int, i: int, m: int) -> bool:
-    """Whether z leaves row i of contact a at rest, up to the rounding of an edge: there mu T is a term beside N."""
-    u, size = motion_of(c, c.z, i, m)
-    _, beside = motion_of(c, c.z, a, m)
-    return abs(u) <= AT_REST * size or (i != a and c.mu[c.ids[a]] * abs(u) <= ROUNDING * beside)
+def is_kept(c: ContactProblem, p: Doubles, a: int, i: int, m: int) -> bool:
+    """Whether p leaves row i of contact a at rest, up to the rounding of an edge.
+
+    There mu T stands beside N, and what friction at its limit does beside what it does.
+    """
+    u, size = motion_of(c, p, i, m)
+    _, beside = motion_of(c, p, a, m)
+    mu = c.mu[c.ids[a]]
+    limit = mu * mu * c.mobility[i * m + i] * p[a]
+    return abs(u) <= AT_REST * size or (i != a and mu * abs(u) <= ROUNDING * (beside + limit))
 
 
 def is_loaded(c: ContactProblem, a: int, n_a: int, n_f: int) -> bool:
@@ -105,10 +110,41 @@ def is_loaded(c: ContactProblem, a: int, n_a: int, n_f: int) -> bool:
         return True
     m, shares = n_a + n_f, False
     for b in range(n_a):
-        if c.mobility[a * m + b] > 0.0 and c.impulse[b] > 0.0:
-            own = c.mobility[a * m + a] * c.mobility[b * m + b]
-            shares = shares or own - c.mobility[a * m + b] * c.mobility[b * m + a] <= DEGENERATE * own
+        shares = shares or (c.impulse[b] > 0.0 and are_one(c, a, b, m))
     return shares and not moves(c, c.impulse, a, m)
+
+
+def are_one(c: ContactProblem, i: int, k: int, m: int) -> bool:
+    """Whether two rows are one direction, of one sign."""
+    own, both = c.mobility[i * m + i] * c.mobility[k * m + k], c.mobility[i * m + k] * c.mobility[k * m + i]
+    return c.mobility[i * m + k] > 0.0 and own - both <= DEGENERATE * own
+
+
+def share_evenly(c: ContactProblem, n_a: int, n_f: int) -> None:
+    """Of contacts at rest that share a normal, but no tangent, let each have as much load to spare as the other.
+
+    Else the one that has nothing to spare in a step, up to rounding, opens or gives way, and the other in the next.
+    """
+    m = n_a + n_f
+    for f in range(n_f):
+        for h in range(f):
+            a, b, S, T = c.carrier[h], c.carrier[f], n_a + h, n_a + f
+            pressed = c.impulse[a] > 0.0 or c.impulse[b] > 0.0
+            if pressed and c.mu[c.ids[a]] > 0.0 and c.mu[c.ids[b]] > 0.0 and are_one(c, a, b, m):
+                across = c.mobility[S * m + S] * c.mobility[T * m + T] - c.mobility[S * m + T] ** 2
+                crossed = across > DEGENERATE * c.mobility[S * m + S] * c.mobility[T * m + T]
+                if crossed and is_kept(c, c.impulse, a, S, m) and is_kept(c, c.impulse, b, T, m):
+                    balance(
+                        c, a, b, abs(c.impulse[S]) / c.mu[c.ids[a]], abs(c.impulse[T]) / c.mu[c.ids[b]], m
+                    )
+
+
+def balance(c: ContactProblem, a: int, b: int, needed: float, too: float, m: int) -> None:
+    """Half of what contacts a and b do not need for their friction to each; b's normal is `scale` times a's."""
+    scale = c.mobility[a * m + b] / c.mobility[a * m + a]
+    spare = 0.5 * (c.impulse[a] - needed + scale * (c.impulse[b] - too))
+    if spare > 0.0:
+        c.impulse[a], c.impulse[b] = needed + spare, too + spare / scale
 
 
 def infects(c: ContactProblem, n_a: int, n_f: int) -> bool:

@@ -12,7 +12,7 @@ import cython
 
 from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.coulomb import ContactProblem, motion_of, solve_contacts
-from lcpstep.kernels.repose import infects, is_loaded, moves, stay
+from lcpstep.kernels.repose import infects, is_loaded, moves, share_evenly, stay
 from lcpstep.kernels.vectors import clear
 from lcpstep.pointers import Doubles, Indices
 
@@ -87,3 +87,4 @@ def rest_where_possible(c: ContactProblem, sticks: Indices, sliding: Doubles, n_
     if some:
         clear(c.sum, n_a)
         stay(c, n_a, n_f)
+    share_evenly(c, n_a, n_f)

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene
+from lagrangian import Contacts, Coulomb, LinearContacts, LinearSystem, Scene
 from lcpstep import EventDriven, Located, Moreau, simulate
 
 M0, R, G0 = 1.3, 0.25, 9.81
@@ -95,3 +95,53 @@ def test_a_ball_rolls_along_a_groove(method, error):
     run = simulate(scene, method)
     a = G0 * math.sin(slope) / (1.0 + 0.4 / math.cos(steep) ** 2)
     assert run.q[-1, :3] == pytest.approx([0.5 * a, 0.0, 0.0], abs=error)
+
+
+def cylinder(t_end):
+    """A ball that rolls round inside a vertical cylinder, by 8 rad/s, spinning about the radius; its height."""
+    r0, round_, spin = 0.75, 8.0, 2.0
+
+    def gap(t, q, v, p, out):
+        out[0] = out[1] = r0 - math.hypot(q[0], q[1])
+
+    def jacobian(t, q, v, p, out):
+        out[:] = 0.0
+        r = math.hypot(q[0], q[1])
+        for c in range(2):
+            out[c, 0], out[c, 1] = -q[0] / r, -q[1] / r
+
+    def tangent(t, q, v, p, out):
+        r = math.hypot(q[0], q[1])
+        x, y = q[0] / r, q[1] / r
+        out[:] = 0.0
+        out[0, 2], out[0, 3], out[0, 4] = 1.0, R * y, -R * x
+        out[1, 0], out[1, 1], out[1, 5] = -y, x, R
+
+    scene = Scene(
+        system=LinearSystem(MASS, force=[0, 0, -M0 * G0, 0, 0, 0]), q0=[r0, 0, 0, 0, 0, 0], t_span=(0.0, t_end),
+        v0=[0, r0 * round_, 0, spin, 0, -r0 * round_ / R],
+        contacts=Contacts(2, gap, jacobian, friction=Coulomb(50.0, tangent)),
+    )  # fmt: skip
+    k, a = math.sqrt(2.0 / 7.0) * round_, -2.0 / 7.0 * R * round_ * spin - 5.0 / 7.0 * G0
+    return scene, lambda t: a / k**2 * (1.0 - np.cos(k * t))
+
+
+@pytest.mark.parametrize(
+    ("method", "error"),
+    [(EventDriven(1e-10, 1e-10), 1e-8), (Located(5e-3, order=4), 1e-6), (Moreau(1e-5), 1e-3)],
+)
+def test_a_ball_in_a_cylinder_goes_up_and_down_by_the_root_of_two_sevenths(method, error):
+    scene, height = cylinder(1.0)
+    run = simulate(scene, method, keep=np.linspace(0.0, 1.0, 40))
+    assert np.max(np.abs(run.q[:, 2] - height(run.t))) < error
+
+
+def test_contacts_that_share_a_normal_stay_closed_both():
+    scene, height = cylinder(0.1)
+    run = simulate(scene, Moreau(1e-2, tolerance=1e-4))
+    assert run.q[-1, 2] == pytest.approx(height(0.1), abs=1e-4)
+    assert len(run.t) < 50000
+    for steps in (run, simulate(scene, Moreau(1e-3))):
+        assert sorted(steps.impacts.contact) == [0, 0, 1, 1]
+        spare = 50.0 * steps.impulse[2:] - np.abs(steps.friction_impulse[2:])
+        assert spare[:, 0] == pytest.approx(spare[:, 1], rel=1e-6)
