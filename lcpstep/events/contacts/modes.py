@@ -208,10 +208,17 @@ def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
 
 
 def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
-    """Size of the terms of the same acceleration, their signs left aside."""
+    """Size of the terms of the same acceleration, their signs left aside.
+
+    Friction is known to the rounding of its limit, from which the solver measures it.
+    """
     m, size = n_a + n_f, size_of_acceleration(s.rows, row_of(s.rows, a, n_a), s.a)
-    for b in range(m):
+    for b in range(n_a):
         size += abs(s.problem.mobility[a * m + b] * s.problem.impulse[b])
+    for f in range(n_f):
+        k = s.problem.carrier[f]
+        limit = s.problem.mu[s.problem.ids[k]] * s.problem.impulse[k]
+        size += abs(s.problem.mobility[a * m + n_a + f] * max(limit, abs(s.problem.impulse[n_a + f])))
     return size
 
 
