@@ -23,6 +23,7 @@ RESOLUTION = 1e-6  # of the distance
 ROUNDING = 4e-16  # of the size of the graphs: neighbouring numbers, which cannot be halved, lie 3.2e-16 apart
 LEAF = 8  # segments in a leaf of the tree
 DEPTH = 256  # of the stacks
+EDGE = 0.1  # of a piece: no part is smaller
 FIRST = 512  # points looked at first, for a bound that spares most of the others
 
 
@@ -79,34 +80,59 @@ def hausdorff(a: Graph, b: Graph, least: float = 0.0) -> float:
 def farthest(a: Graph, b: Graph, bound: float, rounding: float, nodes: Indices, pieces: Doubles) -> float:
     """The largest distance of a point of a from b, or the bound if that is larger."""
     n, last = a.n, b.n - 2
-    i = 0
+    segment = nearest(
+        b, a.x[n - 1], a.y[n - 1], bound, last, nodes
+    )  # beyond an end the other graph does not go on
+    bound = max(bound, to_segment(b, segment, a.x[n - 1], a.y[n - 1]))
+    i, ahead = (
+        0,
+        0,
+    )  # ahead of the same place in b lies what is nearest by so much: a point later by hardly another
     while i < n:
         segment = nearest(b, a.x[i], a.y[i], bound, i if i < last else last, nodes)
         bound = max(bound, to_segment(b, segment, a.x[i], a.y[i]))
         i += n // FIRST if n >= FIRST else 1
     for i in range(n - 1):
-        same = i if i < last else last
-        if covered(a.x[i], a.y[i], a.x[i + 1], a.y[i + 1], b, same, bound):
+        same = i + ahead
+        same = 0 if same < 0 else same if same < last else last
+        if covered(a.x[i], a.y[i], a.x[i + 1], a.y[i + 1], b, same, near_enough(bound)):
             continue
         top = 0
         pieces[0], pieces[1], pieces[2], pieces[3] = a.x[i], a.y[i], a.x[i + 1], a.y[i + 1]
         while top >= 0:
             x0, y0, x1, y1 = pieces[4 * top], pieces[4 * top + 1], pieces[4 * top + 2], pieces[4 * top + 3]
             top -= 1
-            s0 = nearest(b, x0, y0, bound, same, nodes)
+            s0 = nearest(b, x0, y0, near_enough(bound), same, nodes)
             bound = max(bound, to_segment(b, s0, x0, y0))
-            s1 = nearest(b, x1, y1, bound, s0, nodes)
+            s1 = nearest(b, x1, y1, near_enough(bound), s0, nodes)
             bound = max(bound, to_segment(b, s1, x1, y1))
-            if covered(x0, y0, x1, y1, b, s0, bound) or covered(x0, y0, x1, y1, b, s1, bound):
+            ahead = s1 - i - 1
+            enough = near_enough(bound)
+            if covered(x0, y0, x1, y1, b, s0, enough) or covered(x0, y0, x1, y1, b, s1, enough):
                 continue
             if hypot(x1 - x0, y1 - y0) <= RESOLUTION * bound + rounding or top + 2 >= DEPTH:
                 continue
-            x, y = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
+            share = 0.5 if s0 == s1 else divide(x0, y0, x1, y1, b, (s0 + s1 + 1) // 2)
+            x, y = x0 + share * (x1 - x0), y0 + share * (y1 - y0)
             top += 1
             pieces[4 * top], pieces[4 * top + 1], pieces[4 * top + 2], pieces[4 * top + 3] = x, y, x1, y1
             top += 1
             pieces[4 * top], pieces[4 * top + 1], pieces[4 * top + 2], pieces[4 * top + 3] = x0, y0, x, y
     return bound
+
+
+def near_enough(bound: float) -> float:
+    """What is no farther than that is no farther than the bound, as far as is asked."""
+    return bound * (1.0 + RESOLUTION)
+
+
+def divide(x0: float, y0: float, x1: float, y1: float, b: Graph, point: int) -> float:
+    """Where to divide a piece whose ends lie near different segments: beside the point of b between these, which
+    settles both parts at once where the graphs run side by side; in the middle where that is near an end or beyond.
+    """
+    ex, ey = x1 - x0, y1 - y0
+    share = ((b.x[point] - x0) * ex + (b.y[point] - y0) * ey) / (ex * ex + ey * ey)
+    return share if EDGE < share < 1.0 - EDGE else 0.5
 
 
 def covered(x0: float, y0: float, x1: float, y1: float, b: Graph, segment: int, bound: float) -> bool:
