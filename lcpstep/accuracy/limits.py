@@ -15,13 +15,14 @@ from lagrangian import Scene
 from lcpstep.accuracy.errors import Difference
 from lcpstep.accuracy.horizon import LOST, Growth, growth
 from lcpstep.accuracy.reference import TIGHTEST, Reference
-from lcpstep.accuracy.work_precision import Study
+from lcpstep.accuracy.work_precision import UNFIT, Study
 from lcpstep.errors import LcpStepError
 from lcpstep.simulation import Method, simulate
 from lcpstep.trajectory import Trajectory
 
 LOOKS = 2001  # instants at which the size of a motion is measured
 CHAOTIC = 100.0  # growth from which on a lost motion was lost to chaos
+EPSILON = float(np.finfo(float).eps)
 ROUNDING = 1e-15  # of the size of the motion
 
 
@@ -35,6 +36,27 @@ def allow_for_rounding(scene: Scene, found: Reference, result: Study) -> None:
     for measure in set(sizes) & set(result.measures):
         known = result.uncertainty.get(measure, 0.0)
         result.uncertainty[measure] = max(known, ROUNDING * sizes[measure])
+
+
+def mark_rounding(scene: Scene, found: Reference, result: Study) -> None:
+    """Mark errors that are nothing but rounding: of the finest levels of a method, where they have ceased to fall,
+    and are no larger than what so many steps round.
+    """
+    if found.motion is None:
+        return
+    start, end = scene.t_span[0], min(scene.t_span[1], float(found.motion.t[-1]))
+    q, v = (float(np.max(np.abs(x))) for x in found.motion.at(np.linspace(start, end, LOOKS)))
+    of_a_step = EPSILON * max(q, v * max(abs(start), abs(end)))
+    for method in result.methods:
+        for measure in (m for m in result.measures if m not in UNFIT):
+            own = [
+                k for k, x in enumerate(result.levels) if x.method == method and x.errors.get(measure, 0.0)
+            ]
+            best = min(own, key=lambda k: result.levels[k].errors[measure], default=0)
+            for k in (k for k in own if best <= k and best < own[-1]):
+                x = result.levels[k]
+                if x.errors.get("sup_position", math.inf) <= of_a_step * x.steps:
+                    result.levels[k] = replace(x, rounded=(*(m for m in x.rounded if m != measure), measure))
 
 
 def growth_of(scene: Scene, found: Reference, result: Study) -> Growth | None:

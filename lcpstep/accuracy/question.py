@@ -13,7 +13,10 @@ import numpy as np
 from lagrangian import Scene
 from lcpstep.accuracy.dials import changeable, dial, label, with_value
 from lcpstep.accuracy.work_precision import Level, Study
+from lcpstep.described import checksum
 from lcpstep.errors import DamagedFile
+from lcpstep.functions import described
+from lcpstep.saving import digest
 from lcpstep.simulation import Method
 
 LOG = logging.getLogger(__name__)
@@ -74,15 +77,30 @@ def levels_of(
 
 
 def question_of(
-    scene: Scene, measures: Sequence[str], spread: Sequence[float], reference: Any
+    scene: Scene, measures: Sequence[str], spread: Sequence[float], reference: Any, horizon: float | None
 ) -> dict[str, Any]:
     """What tells one study from another, as a file keeps it."""
     initial = [np.asarray(x).tolist() for x in (scene.q0, scene.v0, scene.p)]
     return {
         "scene": scene.name, "parameters": dict(scene.parameters), "t_span": list(scene.t_span),
-        "q0": initial[0], "v0": initial[1], "p": initial[2], "measures": list(measures), "spread": list(spread),
-        "reference": None if reference is None else repr(reference),
+        "q0": initial[0], "v0": initial[1], "p": initial[2], "scene_sha256": checksum(scene),
+        "measures": list(measures), "spread": list(spread), "horizon": None if horizon is None else str(horizon),
+        "reference": _told(scene.exact if reference is None else reference),
     }  # fmt: skip
+
+
+def _told(reference: Any) -> str | None:
+    """A reference in words that are the same in every process, and of no other."""
+    if reference is None:
+        return None
+    if hasattr(reference, "at") and hasattr(reference, "t"):
+        t = np.asarray(reference.t)
+        q, v = reference.at(t)
+        return f"a motion by {getattr(reference, 'method', None)!r}, {digest({'t': t, 'q': q, 'v': v})}"
+    if callable(reference):
+        known = described(reference)
+        return f"{known['function']} {known['sha256']}"
+    return repr(reference)
 
 
 def earlier(save: str | Path | None, question: dict[str, Any]) -> dict[tuple[str, str], Level]:

@@ -19,7 +19,14 @@ from lcpstep.accuracy.environment import machine, versions
 from lcpstep.accuracy.errors import MEASURES, units
 from lcpstep.accuracy.horizon import LOST
 from lcpstep.accuracy.levels import measured
-from lcpstep.accuracy.limits import allow_for_growth, allow_for_rounding, growth_of, separation, shortened
+from lcpstep.accuracy.limits import (
+    allow_for_growth,
+    allow_for_rounding,
+    growth_of,
+    mark_rounding,
+    separation,
+    shortened,
+)
 from lcpstep.accuracy.question import curves_of, earlier, levels_of, question_of
 from lcpstep.accuracy.reference import find_reference
 from lcpstep.accuracy.work_precision import Level, Study
@@ -94,7 +101,7 @@ def study(
         raise ValueError(f"save: expected a name that ends in .json or .csv, got {str(save)!r}")
     notes: list[str] = []
     curves = levels_of(curves_of(methods), scene, h, tolerances, notes)
-    question = question_of(scene, measures, spread, reference)
+    question = question_of(scene, measures, spread, reference, horizon)
     done = earlier(save, question)
     from lcpstep import __version__
 
@@ -145,6 +152,7 @@ def _fill(
             result.notes.append(note)
         if save is not None:
             result.save(save)
+    mark_rounding(scene, found, result)
     _remarks(result)
 
 
@@ -162,6 +170,11 @@ def _remarks(result: Study) -> None:
         result.notes.append(
             f"the reference is not good enough for the smallest errors; it is known to within: {known}. "
             "Errors within ten times that are marked and left out of the orders"
+        )
+    if any(x.rounded for x in result.levels):
+        result.notes.append(
+            "the finest levels of some methods are rounding, and no order is fitted through them: their errors have "
+            "ceased to fall, and are no larger than so many steps round"
         )
     lost = [f"{x.method} at {x.dial} = {x.value:.3g}" for x in result.levels if x.separated]
     if lost:

@@ -47,6 +47,7 @@ class Level:
     repeats : runs that were timed
     steps, lcp_calls, force_evaluations : means over the runs
     limited : measures whose error is within ten times what the reference may be off
+    rounded : measures whose error is rounding alone
     separated : whether the motion has lost the reference, so that its errors only say how large the motion is
     bars : true error over the error bar of the run at the middle one of the nearby values, by measure
     """
@@ -65,6 +66,7 @@ class Level:
     lcp_calls: float = math.nan
     force_evaluations: float = math.nan
     limited: tuple[str, ...] = ()
+    rounded: tuple[str, ...] = ()
     separated: bool = False
     bars: dict[str, float] = field(default_factory=dict)
 
@@ -114,13 +116,13 @@ class Study:
         return measure if unit == "1" else f"{measure} [{unit}]"
 
     def curve(self, method: str, measure: str, trusted: bool = True) -> list[Level]:
-        """Levels of a method that have this error; `trusted`: neither limited by the reference nor separated."""
+        """Levels of a method that have this error; `trusted`: not separated, limited by the reference, or rounded."""
         return [
             x
             for x in self.levels
             if x.method == method
             and math.isfinite(x.errors.get(measure, math.nan))
-            and not (trusted and (x.separated or measure in x.limited))
+            and not (trusted and (x.separated or measure in x.limited or measure in x.rounded))
         ]
 
     def order(self, method: str, measure: str = "sup_position") -> Order | None:
@@ -192,11 +194,11 @@ class Study:
         with path.open("w", newline="") as file:
             file.writelines(f"# {name}: {json.dumps(value)}\n" for name, value in facts.items())
             out = csv.writer(file)
-            out.writerow([*COLUMNS, *self.measures, "limited", "separated"])
+            out.writerow([*COLUMNS, *self.measures, "limited", "rounded", "separated"])
             for x in self.levels:
                 row = [getattr(x, name) for name in COLUMNS]
                 row += [x.errors.get(m, "") for m in self.measures]
-                out.writerow([*row, " ".join(x.limited), x.separated])
+                out.writerow([*row, " ".join(x.limited), " ".join(x.rounded), x.separated])
 
     def _bars(self, method: str) -> str:
         """From where to where the errors of a method are its bars, over the levels to be trusted."""
@@ -220,6 +222,8 @@ class Study:
         lines += [f"reference: {self.reference}", f"growth: {self.growth}"]
         if any(x.limited for x in self.levels):
             lines.append("~ the reference is not known well enough for this error")
+        if any(x.rounded for x in self.levels):
+            lines.append("~ this error is rounding, and falls no further")
         if any(x.separated for x in self.levels):
             lines.append("! the motion has lost the reference: this error says only how large the motion is")
         return "\n".join([*lines, *(f"note: {x}" for x in self.notes)])
@@ -236,7 +240,8 @@ def _level(stored: dict[str, Any]) -> Level:
     nan: dict[str, Any] = {k: math.nan for k in numbers if stored[k] is None}
     errors = {m: math.inf if e is None else e for m, e in stored["errors"].items()}
     scatter = {m: tuple(math.inf if e is None else e for e in pair) for m, pair in stored["scatter"].items()}
-    return Level(**stored | nan | {"errors": errors, "scatter": scatter, "limited": tuple(stored["limited"])})
+    marks: dict[str, Any] = {name: tuple(stored.get(name, ())) for name in ("limited", "rounded")}
+    return Level(**stored | nan | marks | {"errors": errors, "scatter": scatter})
 
 
 def _row(x: Level, shown: Iterable[str]) -> list[str]:
@@ -244,7 +249,7 @@ def _row(x: Level, shown: Iterable[str]) -> list[str]:
     if x.status != "DONE":
         return [*row, x.status, *[""] * (3 + len(list(shown)))]
     row += [f"{x.seconds:.3g}", *(f"{n:.0f}" for n in (x.steps, x.lcp_calls, x.force_evaluations))]
-    marks = {m: "~" if m in x.limited else "!" if x.separated else "" for m in shown}
+    marks = {m: "~" if m in x.limited + x.rounded else "!" if x.separated else "" for m in shown}
     return row + [f"{x.errors[m]:.2e}{marks[m]}" if m in x.errors else "" for m in shown]
 
 

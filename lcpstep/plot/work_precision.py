@@ -79,6 +79,6 @@ def _curve(
     low, high = np.array([level.scatter[measure] for level in levels]).reshape(-1, 2).T
     bars = [np.minimum(errors - low, 0.999 * errors), high - errors]
     ax.errorbar(at, errors, yerr=bars, color=colour, marker="", lw=1.0, elinewidth=0.6, capsize=2)
-    trusted = np.array([not (level.separated or measure in level.limited) for level in levels], dtype=bool)
+    trusted = np.array([not (x.separated or measure in (*x.limited, *x.rounded)) for x in levels], dtype=bool)
     ax.plot(at[trusted], errors[trusted], marker, color=colour, label=name)
     ax.plot(at[~trusted], errors[~trusted], marker, color=colour, mfc="none")

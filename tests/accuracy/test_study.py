@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -54,6 +55,19 @@ def test_the_cost_of_an_error_lies_on_the_line_between_levels_and_beyond_is_said
 
 
 # --- studies
+
+
+def test_no_order_is_fitted_through_rounding():
+    # three equal balls between walls move in straight lines: all methods that place impacts are exact, to rounding
+    # that grows with every step, by an order of about -1
+    G = [[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, -1.0, 1.0], [0.0, 0.0, -1.0]]
+    walls = LinearContacts(G=G, offset=[0.0, 0.0, 0.0, 1.0], restitution=1.0)
+    scene = Scene(LinearSystem(M=np.eye(3)), [0.2, 0.3, 0.8], [2.0, -0.6, 0.1], (0.0, 5.0), contacts=walls)
+    found = study(scene, [Located(), Moreau()], **SHORT)
+    assert not found.orders()["Located"]
+    assert all(x.rounded for x in found.levels if x.method == "Located")
+    assert any("rounding" in note for note in found.notes)
+    assert not any(x.rounded for x in found.levels if x.method == "Moreau")
 
 
 @pytest.mark.slow
@@ -238,6 +252,38 @@ def test_an_interrupted_study_loses_nothing_and_is_carried_on(tmp_path):
     assert Study.load(file).finished
     with pytest.raises(FileExistsError, match="another study"):
         study(scenes.bouncing_ball(t_end=2.0), Moreau(), h=steps, save=file, **SHORT)
+
+
+def falling(t):
+    """A ball that is let go from one metre, before it arrives."""
+    t = np.asarray(t)[:, None]
+    return 1.0 - 0.5 * 9.81 * t**2, -9.81 * t
+
+
+def rising(t):
+    """The same, thrown upwards."""
+    t = np.asarray(t)[:, None]
+    return 1.0 + t - 0.5 * 9.81 * t**2, 1.0 - 9.81 * t
+
+
+def test_levels_of_another_scene_horizon_or_reference_are_not_taken_for_ones_own(tmp_path):
+    scene = scenes.bouncing_ball(t_end=0.4)
+    run = simulate(scene, EventDriven())
+    first = {"horizon": math.inf, "reference": falling}
+    others = [
+        {"horizon": 0.2}, {"reference": rising}, {"reference": run}, {"reference": EventDriven()},
+        {"scene": replace(scene, contacts=replace(scene.contacts, restitution=0.3))},
+    ]  # fmt: skip
+
+    def asked(of_it=scene, **how):
+        return study(of_it, Moreau(), h=[1e-2], save=tmp_path / "study.json", **SHORT, **first | how)
+
+    kept = asked().levels
+    assert asked().levels == kept
+    for other in others:
+        how = dict(other)
+        with pytest.raises(FileExistsError, match="another study"):
+            asked(how.pop("scene", scene), **how)
 
 
 def test_a_run_that_ends_early_has_no_errors_but_a_reason():
