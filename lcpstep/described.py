@@ -151,11 +151,20 @@ class Describer:
 def checksum(scene: Scene | HybridScene) -> str:
     """A number that is the same exactly if states move on alike, in every process: matrices, functions, parameters.
 
-    Initial state, span, name and drawing have no part in it. Classes of a user's own, and objects that are called,
-    go by their names.
+    Initial state, span, name and drawing have no part in it. Classes of a user's own go by their names.
     """
     made = Describer()
     tree = {name: made.told(getattr(scene, name), name) for name in MOVING if hasattr(scene, name)}
+    return _digest(made, tree)
+
+
+def checksum_of(x: Any) -> str:
+    """The same of a function, or of what is called like one."""
+    made = Describer()
+    return _digest(made, made.told(x, "x"))
+
+
+def _digest(made: Describer, tree: Tree) -> str:
     found = hashlib.sha256(json.dumps(_without_sources(tree), sort_keys=True).encode())
     for name, x in sorted(made.arrays.items()):
         found.update(f"{name} {x.dtype} {x.shape}".encode() + x.tobytes())

@@ -61,11 +61,11 @@ def callees(f: FunctionType) -> Iterator[tuple[str, FunctionType]]:
         if isinstance(g, FunctionType):
             yield name, g
     for name in names_read(f.__code__):
-        if "." in name and isinstance(g := getattr(_member(f, name), "py_func", None), FunctionType):
+        if "." in name and isinstance(g := getattr(member(f, name), "py_func", None), FunctionType):
             yield name, g
 
 
-def _member(f: FunctionType, name: str) -> Any:
+def member(f: FunctionType, name: str) -> Any:
     """What a name with dots stands for, where it leads through modules only; None otherwise."""
     first, *path = name.split(".")
     value = f.__globals__.get(first)

@@ -1,8 +1,10 @@
 """A user's functions in a file: what they are and a checksum of it, never their code to be run.
 
 A function counts as the same where its source without comments, that of all functions that it calls, and the values
-that they read are the same. One without a source (typed into a terminal) is told by its byte code, which belongs to a
-version of Python.
+that they read are the same; an object that is called, or a method, where its attributes are, too. Lists, dictionaries
+and objects of the user's own are read with all they hold, unless the function writes into them, as where it counts
+its calls. One without a source (typed into a terminal) is told by its byte code, which belongs to a version of
+Python.
 """
 
 from __future__ import annotations
@@ -13,13 +15,26 @@ import hashlib
 import importlib
 import inspect
 import textwrap
-from dataclasses import dataclass
-from types import CodeType, FunctionType
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, is_dataclass
+from types import CodeType, FunctionType, MethodType, SimpleNamespace
 from typing import Any
+
+import numpy as np
 
 from lcpstep import fingerprint
 from lcpstep.errors import LcpStepError
 
+READS = (
+    "get",
+    "items",
+    "keys",
+    "values",
+    "index",
+    "count",
+    "copy",
+)  # methods that leave what they are of as it is
+HOLDERS = (list, tuple, set, frozenset, Mapping, np.ndarray)
 OWN = ("lagrangian.scenes.", "lagrangian.profiles")  # where functions are taken from by their name alone
 
 
@@ -50,12 +65,12 @@ def require(f: Any) -> None:
 
 
 def described(f: Any) -> dict[str, str]:
-    """Name, source and checksum of a function; an object that is called has no checksum."""
+    """Name, source and checksum of a function; none of what is called and not written in Python."""
     if isinstance(f, Absent):
         return {"function": f.name, "source": f.source, "sha256": f.sha256}
     plain = getattr(f, "py_func", f)
     if not isinstance(plain, FunctionType):
-        return {"function": f"an object of class {type(f).__name__}", "source": "", "sha256": ""}
+        return {"function": f"an object of class {type(f).__name__}", "source": "", "sha256": _of_object(f)}
     name = f"{plain.__module__}:{plain.__qualname__}"
     return {"function": name, "source": whole_source(plain), "sha256": checksum(plain)}
 
@@ -78,11 +93,87 @@ def checksum(f: FunctionType) -> str:
     return hashlib.sha256("\n".join(sorted(parts)).encode()).hexdigest()
 
 
+def _of_object(f: Any) -> str:
+    """The checksum of an object that is called, or of a method: what it does, and the attributes that it reads."""
+    method = f if isinstance(f, MethodType) else getattr(f, "__call__", None)  # noqa: B004
+    if not isinstance(method, MethodType) or not isinstance(method.__func__, FunctionType):
+        return ""
+    held = {
+        name: x
+        for name, x in getattr(f, "__self__", f).__dict__.items()
+        if name not in written(method.__func__)
+    }
+    return hashlib.sha256(f"{checksum(method.__func__)} {told(held, method.__module__)}".encode()).hexdigest()
+
+
 def read_values(f: FunctionType) -> list[str]:
-    """What f reads from around it, but functions, which are told by their own sources."""
-    named = [*fingerprint.values_read(f), *fingerprint.cells(f)]
-    texts = ((name, fingerprint.value_text(x)) for name, x in named if not hasattr(x, "py_func"))
-    return sorted(f"{name}={text}" for name, text in texts if not text.startswith(fingerprint.UNKNOWN))
+    """What f reads from around it, but functions, which are told by their own sources, and what it writes into."""
+    inner = [name for name in fingerprint.names_read(f.__code__) if "." in name]
+    named = {name: fingerprint.member(f, name) for name in inner}  # lists and the like in a module
+    named = {name: x for name, x in named.items() if isinstance(x, HOLDERS)}
+    named |= dict([*fingerprint.values_read(f), *fingerprint.cells(f)])
+    texts = {}
+    for name, x in named.items():
+        if hasattr(x, "py_func"):
+            continue
+        texts[name] = fingerprint.value_text(x)
+        if fingerprint.UNKNOWN in texts[name]:
+            known = isinstance(x, HOLDERS) or _own(x, f.__module__)
+            texts[name] = told(x, f.__module__) if known and name.split(".")[0] not in written(f) else ""
+    return sorted(f"{name}={text}" for name, text in texts.items() if text)
+
+
+def told(x: Any, module: str, within: tuple[int, ...] = ()) -> str:
+    """What a value holds, as a text that is the same in every process; of objects of other modules their class."""
+    text = fingerprint.value_text(x)
+    if fingerprint.UNKNOWN not in text:
+        return text
+    kind, inside = type(x).__qualname__, (*within, id(x))
+    if id(x) in within:
+        return kind
+    if isinstance(x, np.ndarray):
+        return f"{kind} {x.shape} {told(x.tolist(), module, inside)}"
+    if isinstance(x, Mapping):
+        return f"{kind} {sorted((str(k), told(y, module, inside)) for k, y in x.items())}"
+    if isinstance(x, (list, tuple)):
+        return f"{kind} {[told(y, module, inside) for y in x]}"
+    if isinstance(x, (set, frozenset)):
+        return f"{kind} {sorted(told(y, module, inside) for y in x)}"
+    if _own(x, module):
+        return f"{kind} {told(getattr(x, '__dict__', None), module, inside)}"
+    return kind
+
+
+def _own(x: Any, module: str) -> bool:
+    """Whether it is an object of which all attributes are told."""
+    return is_dataclass(x) or isinstance(x, SimpleNamespace) or type(x).__module__ == module
+
+
+@functools.cache
+def written(f: FunctionType) -> frozenset[str]:
+    """Names of what f writes into or may change by a method, and of attributes that it sets."""
+    try:
+        nodes = ast.walk(ast.parse(source_of(f.__code__)))
+    except SyntaxError:  # the line of a lambda, cut out of what is around it: it cannot set anything
+        return frozenset()
+    return frozenset(name for node in nodes for name in _written_by(node))
+
+
+def _written_by(node: ast.AST) -> Iterator[str]:
+    """The same of one part of its text."""
+    if isinstance(node, (ast.Global, ast.Nonlocal)):
+        yield from node.names
+    place: Any = None
+    if isinstance(node, (ast.Subscript, ast.Attribute)) and not isinstance(node.ctx, ast.Load):
+        place = node
+    elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr not in READS:
+        place = node.func.value
+    while isinstance(place, (ast.Subscript, ast.Attribute)):
+        if isinstance(place, ast.Attribute):
+            yield place.attr
+        place = place.value
+    if isinstance(place, ast.Name):
+        yield place.id
 
 
 def plain_source(f: FunctionType) -> str:

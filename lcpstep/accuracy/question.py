@@ -13,9 +13,8 @@ import numpy as np
 from lagrangian import Scene
 from lcpstep.accuracy.dials import changeable, dial, label, with_value
 from lcpstep.accuracy.work_precision import Level, Study
-from lcpstep.described import checksum
+from lcpstep.described import checksum, checksum_of
 from lcpstep.errors import DamagedFile
-from lcpstep.functions import described
 from lcpstep.saving import digest
 from lcpstep.simulation import Method
 
@@ -98,8 +97,7 @@ def _told(reference: Any) -> str | None:
         q, v = reference.at(t)
         return f"a motion by {getattr(reference, 'method', None)!r}, {digest({'t': t, 'q': q, 'v': v})}"
     if callable(reference):
-        known = described(reference)
-        return f"{known['function']} {known['sha256']}"
+        return f"a function, {checksum_of(reference)}"
     return repr(reference)
 
 

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from lagrangian import HybridScene, Scene, checks
 from lcpstep.analysis.listed import joined, listed
 from lcpstep.dataset import Progress, check_free, labelled, provenance
-from lcpstep.described import checksum
+from lcpstep.described import checksum, checksum_of
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import INSIDE, periods, section
 from lcpstep.simulation import Method
@@ -127,7 +127,8 @@ def bifurcation(
     order = range(len(values)) if start != "backward" else range(len(values) - 1, -1, -1)
     parts = [list(order)[i : i + PART] for i in range(0, len(values), PART)]
     chains = [parts] if start in ("forward", "backward") else [[part] for part in parts]
-    inputs = study.inputs(first) | {"scenes_sha256": [checksum(scene) for scene in (first, last)]}
+    known = {"scenes_sha256": [checksum(scene) for scene in (first, last)], "make_sha256": checksum_of(make)}
+    inputs = study.inputs(first) | known
     done = sweep(study, chains, inputs, out=out, executor=executor, jobs=jobs, progress=progress)
     rows = [row for chain in done for row in chain]
     if all(np.all(row["status"] == INSIDE) for row in rows):
