@@ -207,3 +207,29 @@ def test_states_asked_for_that_end_before_the_impacts_do(times):
         m = simulate(scene, Located(h, 4), keep=times)
         assert m.impacts.time[0] > times[-1]
         assert (m.status, m.doubt) == (Status.DONE, "")
+
+
+def pushed(t, q, v, p, out):
+    """100 N for 10 ms."""
+    out[0] = 100.0 if 2.345 <= t < 2.355 else 0.0
+
+
+def one(t, q, v, p, out):
+    out[0, 0] = 1.0
+
+
+@pytest.mark.parametrize("period", [math.inf, 2.5])
+@pytest.mark.parametrize("method", [Located(1.0 / 60.0), Located(1.0 / 60.0, 4)])
+def test_steps_that_stop_at_a_corner_are_not_said_to_gain_what_a_push_gives(method, period):
+    scene = Scene(System(1, one, pushed), 0.0, 0.0, (0.0, 5.0), corners=[2.345, 2.355], period=period)
+    m = simulate(scene, method)
+    assert (m.q[-1, 0], m.v[-1, 0]) == pytest.approx((2.65, 1.0), abs=1e-12)
+    assert m.doubt == ""
+    assert m.at(2.35)[0][0] == pytest.approx(0.5 * 100.0 * 0.005**2, abs=1e-12)
+    times = np.linspace(2.345, 2.367, 2001)
+    true = np.where(times < 2.355, 50.0 * (times - 2.345) ** 2, times - 2.35)
+    error = np.max(
+        np.abs(m.at(times)[0][:, 0] - true)
+    )  # of order 2 within the step, which bends at the corner
+    bar = simulate(scene, method, error=True).error.position.sup
+    assert error < 1e-13 or 0.5 < error / bar < 2.0

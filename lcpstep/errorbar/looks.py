@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.corner_times import corner_times
 from lcpstep.errorbar.breaks import close, increasing, spread
 from lcpstep.kernels.between import last_rows
 from lcpstep.stepping.interpolation import Parabolic
@@ -75,7 +76,8 @@ def looks(
     some = uneven(start, end, MANY) if many else events
     ends = np.concatenate([run.t[:1], some[:: 1 + len(some) // most], run.t[-1:]])
     after = spread(start, end, most // EVEN, ends, 1 + min(GRADES, most // len(ends)))
-    t = increasing(after, some, _left_out(run, most), _telling(run, end, most), low=start, high=end)
+    corners = corner_times(run.scene, end, most)  # a run stops there, and keeps no state
+    t = increasing(after, some, corners, _left_out(run, most), _telling(run, end, most), low=start, high=end)
     return Looks(t, (False, False), True, many)
 
 

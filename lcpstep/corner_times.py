@@ -1,0 +1,24 @@
+"""The times in the span of a scene at which its callbacks jump or bend: its `corners`, again in every period."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lagrangian import Scene
+
+Array = NDArray[np.float64]
+
+
+def corner_times(scene: Scene, end: float, most: int) -> Array:
+    """Those between the start of the span and a time, in their order; the first ones where they are more."""
+    own, (start, _) = np.asarray(scene.corners, dtype=np.float64), scene.t_span
+    if not len(own):
+        return np.zeros(0)
+    if math.isfinite(scene.period):
+        first = math.floor(start / scene.period)
+        last = min(math.floor(end / scene.period), first + most // len(own) + 1)
+        own = (np.arange(first, last + 1)[:, None] * scene.period + own).ravel()
+    return np.asarray(own[(own > start) & (own < end)][:most])
