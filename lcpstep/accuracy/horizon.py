@@ -28,6 +28,7 @@ LIMIT = 1e4
 LOST = 0.1  # of the size of the motion: two trajectories that far apart have nothing to do with each other
 SMALL, COARSE = 1e-9, 1e-3  # disturbance in units of the size; of methods that round impacts to a grid
 LOOKS = 4000
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # multiples of it, less what is whole, are all different
 EXPONENTIAL = (
     0.75  # at half the time an exponential has reached the power 1/2 of its end, powers of t nearly all
 )
@@ -90,12 +91,18 @@ def growth(scene: Scene, method: Method, motion: Trajectory | None = None) -> Gr
 
 
 def _moved(scene: Scene, by: float) -> Iterator[dict[str, Any]]:
-    """Initial states a little off: coordinates moved either way, else velocities."""
+    """Initial states a little off: coordinates moved either way, else velocities.
+
+    By amounts of their own, since many motions are the same wherever they take place; else all by the same, which
+    parts no bodies that touch.
+    """
     q, v, length = np.asarray(scene.q0), np.asarray(scene.v0), float(np.ptp(scene.t_span))
-    yield {"q0": q + by}
-    yield {"q0": q - by}
-    yield {"v0": v + by / length}
-    yield {"v0": v - by / length}
+    uneven = 1.0 - 0.5 * np.mod(GOLDEN * np.arange(len(q)), 1.0)
+    for share in (uneven, np.ones(len(q))) if len(q) > 1 else (uneven,):
+        yield {"q0": q + by * share}
+        yield {"q0": q - by * share}
+    yield {"v0": v + by / length * uneven}
+    yield {"v0": v - by / length * uneven}
 
 
 def _horizon(t: Array, factor: Array, limit: float) -> float:

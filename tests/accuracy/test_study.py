@@ -180,6 +180,16 @@ def test_chaos_ends_the_comparison_where_it_separates_trajectories():
     assert ball.horizon == math.inf
 
 
+def test_disturbances_grow_in_motions_that_are_the_same_everywhere():
+    # two bodies that push each other away, on a line without a place of its own: e^(sqrt(2) t) of their distance
+    w = math.sqrt(2.0)
+    apart = LinearSystem(M=np.eye(2), K=[[-1.0, 1.0], [1.0, -1.0]])
+    grown = growth(Scene(apart, [0.01, -0.01], [-0.01 * w, 0.01 * w], (0.0, 14.0)), EventDriven())
+    assert 0.8 * w < grown.rate < w  # it begins with what all have in common
+    share = 0.5 * 0.5 * (math.sqrt(5.0) - 1.0) / 2.0  # of the disturbance: half the difference of the two
+    assert grown.horizon == pytest.approx(math.log(2.0 * 1e4 / share) / w, rel=0.05)
+
+
 def test_what_cannot_be_used_is_noted_and_the_rest_is_finished_and_saved(tmp_path):
     file = tmp_path / "study.json"
     found = study(scenes.bouncing_ball(t_end=1.0), {"mine": [Moreau()]}, h=[1e-2, -1.0, 1e-2, math.nan, 1e-3],
