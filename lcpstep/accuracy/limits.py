@@ -14,7 +14,7 @@ import numpy as np
 from lagrangian import Scene
 from lcpstep.accuracy.errors import Difference
 from lcpstep.accuracy.horizon import LOST, Growth, growth
-from lcpstep.accuracy.reference import TIGHTEST, Reference
+from lcpstep.accuracy.reference import TIGHTEST, Reference, alike
 from lcpstep.accuracy.work_precision import UNFIT, Study
 from lcpstep.errors import LcpStepError
 from lcpstep.simulation import Method, simulate
@@ -61,8 +61,9 @@ def mark_rounding(scene: Scene, found: Reference, result: Study) -> None:
 
 def growth_of(scene: Scene, found: Reference, result: Study) -> Growth | None:
     """Growth of a disturbance."""
-    grown, motion = None, found.motion if isinstance(found.motion, Trajectory) else None
-    method = found.method or TIGHTEST
+    grown, motion, method = None, None, found.method or TIGHTEST
+    if isinstance(found.motion, Trajectory) and alike(found.motion.scene, scene):
+        motion = found.motion
     try:
         grown = growth(scene, method, motion if found.method else None)
     except (LcpStepError, ValueError) as error:

@@ -63,6 +63,8 @@ def cost_of(error: float, errors: ArrayLike, seconds: ArrayLike) -> Cost | None:
     Between levels on the straight line in the logarithms, at the first crossing from the fine end, so that a
     lucky coarse level does not count; beyond them along the line fitted through all.
     """
+    if not error > 0.0:
+        raise ValueError(f"error: expected a positive number, got {error!r}")
     x, y = np.asarray(errors, dtype=float), np.asarray(seconds, dtype=float)
     usable = np.isfinite(x) & (x > 0.0) & (y > 0.0)
     x, y = np.log(x[usable]), np.log(y[usable])

@@ -296,6 +296,34 @@ def test_levels_of_another_scene_horizon_or_reference_are_not_taken_for_ones_own
             asked(how.pop("scene", scene), **how)
 
 
+def test_a_reference_that_contradicts_the_event_driven_run_limits_what_is_said():
+    scene = scenes.bouncing_ball(t_end=0.4)
+
+    def wrong(t):
+        q, v = falling(t)
+        return q + 1e-4 * np.sin(20.0 * np.asarray(t))[:, None], v
+
+    found = study(scene, Located(), h=[1e-1, 1e-2, 1e-3], reference=wrong, **SHORT)
+    assert found.uncertainty["sup_position"] == pytest.approx(1e-4, rel=0.01)
+    assert all("sup_position" in x.limited for x in found.levels)
+    assert found.order("Located") is None
+
+
+def test_a_trajectory_of_another_scene_is_told_and_makes_no_chaos():
+    scene = scenes.bouncing_ball(t_end=2.0)
+    softer = replace(scene, contacts=replace(scene.contacts, restitution=0.3))
+    other = simulate(softer, EventDriven())
+    found = study(scene, Located(), h=[1e-2], reference=other, **SHORT)
+    assert any("another scene" in note for note in found.notes)
+    assert "exponentially" not in found.growth
+    assert found.compared_until == 2.0
+    for changed in ({"v0": 1.0}, {"t_span": (1.0, 2.0)}):
+        with pytest.raises(ValueError, match="initial state or time"):
+            study(replace(scene, **changed), Located(), h=[1e-2], reference=other, **SHORT)
+    with pytest.raises(ValueError, match="error: expected a positive number"):
+        study(scene, Moreau(), h=[1e-1, 1e-2, 1e-3], **SHORT).cost("Moreau", 0.0)
+
+
 def test_a_run_that_ends_early_has_no_errors_but_a_reason():
     class Stops:
         def run(self, scene, kept, progress):
