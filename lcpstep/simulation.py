@@ -16,6 +16,7 @@ from lagrangian.relations import check_derivatives, is_large
 from lcpstep.depth import too_deep
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget
+from lcpstep.hearing import hearing
 from lcpstep.hops import too_short
 from lcpstep.outrun import outrun
 from lcpstep.prepared import prepared
@@ -65,6 +66,7 @@ def simulate(
     progress: Callable[[float], None] | None = None,
     error: bool = False,
 ) -> HybridTrajectory: ...
+@hearing()
 def simulate(
     scene: Scene | HybridScene,
     method: Method,

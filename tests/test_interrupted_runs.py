@@ -1,11 +1,16 @@
 """Ctrl-C in runs: heard once, by whatever is at work, and the motion so far is handed over."""
 
+import math
+import signal
+import threading
+import time
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from lagrangian import Contacts, Scene, System, scenes
+from lagrangian import Contacts, LinearContacts, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, Status, simulate, simulation
 from lcpstep.maps import periods
 from lcpstep.model import UncompiledCallback
@@ -191,3 +196,29 @@ def test_an_interrupt_is_heard_once():
     cam = scenes.cam_follower(rpm=700.0)
     found = periods(cam, Moreau(1e-4), np.array([[1.33, -66.2]]), 1)
     assert np.all(np.isfinite(found.states))
+
+
+@pytest.mark.parametrize("method", [Located(1e-3), EventDriven(1e-9, 1e-9)], ids=["located", "event-driven"])
+def test_an_interrupt_between_c_and_a_function_in_python_is_heard(method):
+    """It was dropped there, more often than not, and with it what the function had answered."""
+    stiffness = {"k": 1.0}
+
+    def force(t, q, v, p, out):
+        out[0] = math.cos(1.7 * t) - stiffness["k"] * q[0]
+
+    contacts = LinearContacts(G=[[1.0], [-1.0]], offset=[0.3, 0.9], restitution=0.6)
+    scene = Scene(System(1, 1.0, force), 0.1, 0.0, (0.0, 1e5), contacts=contacts)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UncompiledCallback)
+        whole = simulate(replace(scene, t_span=(0.0, 50.0)), method)
+        for k in range(8):
+            late = threading.Timer(0.05 + 0.01 * k, signal.raise_signal, (signal.SIGINT,))
+            began = time.perf_counter()
+            late.start()
+            with pytest.raises(SimulationInterrupted) as caught:
+                simulate(scene, method)
+            assert time.perf_counter() - began < 5.0
+            found = caught.value.trajectory
+            seen = found.t < 40.0
+            np.testing.assert_allclose(found.q[seen], whole.at(found.t[seen])[0], atol=1e-5)
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler

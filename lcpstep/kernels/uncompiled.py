@@ -13,8 +13,9 @@ import numpy as np
 
 from lagrangian.checks import said
 from lagrangian.plain import python
-from lcpstep.faults import Callback, Fault, interrupted, name_of, note
+from lcpstep.faults import LOCAL, Callback, Fault, interrupted, name_of, note
 from lcpstep.functions import require
+from lcpstep.hearing import between
 
 C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 4, ctypes.POINTER(ctypes.c_ssize_t))
 ITEM, ALL_ONES = 8, 0xFF  # bytes of a number; of a not-a-number
@@ -29,6 +30,7 @@ class CalledBack:
         self.function = C_FUNCTION(self.call)
         self.address = int(ctypes.cast(self.function, ctypes.c_void_p).value or 0)
 
+    @between
     def call(self, t: float, q: int, v: int, p: int, out: int, sizes: Any) -> None:
         """The function on copies of the numbers that C points to: what it keeps of them outlives the run."""
         n_q, n_v, n_p, rows, columns = sizes[:5]
@@ -40,8 +42,11 @@ class CalledBack:
         room = bytearray(ctypes.string_at(out, ITEM * rows * (columns or 1)))
         filled = np.frombuffer(room)
         try:
+            LOCAL.asking = True
             self.f(t, *given, filled.reshape(rows, columns) if columns else filled)
+            LOCAL.asking = False
         except BaseException as error:  # C passes none on
+            LOCAL.asking = False
             ctypes.memset(out, ALL_ONES, len(room))
             note(Fault(self.name, t, x.copy(), x_t.copy(), said(error), error))
         else:

@@ -1,0 +1,72 @@
+"""Interrupts of the keyboard while C calls functions that stay in Python.
+
+Python raises an interrupt wherever it is; between C and the user's function that is where nobody can catch it, and it
+would be dropped, with the function's answer. There it is noted instead (`lcpstep.faults`), as one that the function
+itself has heard, for the run to raise.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from types import CodeType, FrameType
+from typing import Any
+
+import numpy as np
+
+from lcpstep.faults import LOCAL, Fault, cause, interrupted, note
+
+BETWEEN: set[CodeType] = set()  # of functions that C calls, and that call the user's
+
+
+def between(f: Callable[..., Any]) -> Callable[..., Any]:
+    """Mark a function that C calls; it sets `LOCAL.asking` while the user's is at work."""
+    BETWEEN.add(f.__code__)
+    return f
+
+
+class Hearing:
+    """A handler of interrupts that does as the one before it, and notes what this raises where C would drop it."""
+
+    def __init__(self, before: Callable[[int, FrameType | None], Any]) -> None:
+        self.before = before
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        """Handle the signal."""
+        try:
+            self.before(number, frame)
+        except KeyboardInterrupt as error:
+            if not _is_between(frame):
+                raise
+            note(Fault("an interrupt", 0.0, np.zeros(0), np.zeros(0), "heard", error))
+
+
+def _is_between(frame: FrameType | None) -> bool:
+    """Whether C waits for the code at work, and the user's function is not at work, which has its own way out."""
+    while frame is not None and frame.f_code not in BETWEEN:
+        frame = frame.f_back
+    return frame is not None and not getattr(LOCAL, "asking", False)
+
+
+@contextmanager
+def hearing() -> Generator[None, None, None]:
+    """Hear interrupts wherever they come; only the main thread is told of them."""
+    before = signal.getsignal(signal.SIGINT)
+    if (
+        threading.current_thread() is not threading.main_thread()
+        or not callable(before)
+        or isinstance(before, Hearing)
+    ):
+        yield
+        return
+    own = Hearing(before)
+    signal.signal(signal.SIGINT, own)
+    try:
+        yield
+        if interrupted():  # by what was called beside the motion
+            cause()
+    finally:
+        if signal.getsignal(signal.SIGINT) is own:
+            signal.signal(signal.SIGINT, before)
