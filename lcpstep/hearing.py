@@ -18,6 +18,7 @@ import numpy as np
 
 from lcpstep.faults import LOCAL, Fault, cause, interrupted, note
 
+EXPECTED = False  # until there is a function that C calls: handlers take their time
 BETWEEN: set[CodeType] = set()  # of functions that C calls, and that call the user's
 
 
@@ -50,23 +51,52 @@ def _is_between(frame: FrameType | None) -> bool:
     return frame is not None and not getattr(LOCAL, "asking", False)
 
 
+class Open(threading.local):
+    """Of a thread: how many runs are under way, and what handles its interrupts."""
+
+    runs = 0
+    handler: Hearing | None = None
+
+
+OPEN = Open()
+
+
+def expect() -> None:
+    """A function that C calls has been made: from now on runs hear interrupts there, the one under way as well."""
+    global EXPECTED
+    EXPECTED = True
+    if OPEN.runs:
+        _begin()
+
+
+def _begin() -> None:
+    """Hear interrupts wherever they come; only the main thread is told of them."""
+    if OPEN.handler is not None or threading.current_thread() is not threading.main_thread():
+        return
+    before = signal.getsignal(signal.SIGINT)
+    if callable(before):
+        OPEN.handler = Hearing(before)
+        signal.signal(signal.SIGINT, OPEN.handler)
+
+
+def _end() -> None:
+    """Hand over to the handler before, unless somebody else has taken over."""
+    own, OPEN.handler = OPEN.handler, None
+    if own is not None and signal.getsignal(signal.SIGINT) is own:
+        signal.signal(signal.SIGINT, own.before)
+
+
 @contextmanager
 def hearing() -> Generator[None, None, None]:
-    """Hear interrupts wherever they come; only the main thread is told of them."""
-    before = signal.getsignal(signal.SIGINT)
-    if (
-        threading.current_thread() is not threading.main_thread()
-        or not callable(before)
-        or isinstance(before, Hearing)
-    ):
-        yield
-        return
-    own = Hearing(before)
-    signal.signal(signal.SIGINT, own)
+    """A run, in which interrupts are heard wherever they come."""
+    OPEN.runs += 1
     try:
+        if EXPECTED:
+            _begin()
         yield
         if interrupted():  # by what was called beside the motion
             cause()
     finally:
-        if signal.getsignal(signal.SIGINT) is own:
-            signal.signal(signal.SIGINT, before)
+        OPEN.runs -= 1
+        if OPEN.runs == 0:
+            _end()

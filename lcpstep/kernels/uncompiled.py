@@ -15,7 +15,7 @@ from lagrangian.checks import said
 from lagrangian.plain import python
 from lcpstep.faults import LOCAL, Callback, Fault, interrupted, name_of, note
 from lcpstep.functions import require
-from lcpstep.hearing import between
+from lcpstep.hearing import between, expect
 
 C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 4, ctypes.POINTER(ctypes.c_ssize_t))
 ITEM, ALL_ONES = 8, 0xFF  # bytes of a number; of a not-a-number
@@ -26,6 +26,7 @@ class CalledBack:
 
     def __init__(self, f: Callback, first_order: bool = False) -> None:
         require(f)
+        expect()
         self.f, self.name, self.first_order = python(f), name_of(f), first_order
         self.function = C_FUNCTION(self.call)
         self.address = int(ctypes.cast(self.function, ctypes.c_void_p).value or 0)
