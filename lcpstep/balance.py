@@ -129,9 +129,7 @@ def _smooth(run: Trajectory, h: float, k: Any) -> Any:
         after = (last > 0) & (events[last - 1] == t[k]) & (way < h)
         fits |= after & (last == np.searchsorted(events, t[k + 1] + near))
     corners = corner_times(run.scene, float(t[-1]), len(t))
-    if len(corners) and hasattr(
-        run.method, "order"
-    ):  # it stops there, and the forces at both ends tell nothing
+    if len(corners) and hasattr(run.method, "order"):  # it stops there, and forces at both ends tell nothing
         fits &= np.searchsorted(corners, t[k] - near) == np.searchsorted(corners, t[k + 1] + near)
     contacts = run.scene.contacts
     if contacts is not None and (contacts.friction is not None or driven(contacts)):

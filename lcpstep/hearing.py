@@ -9,16 +9,17 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from collections.abc import Callable
+from functools import wraps
 from types import CodeType, FrameType
-from typing import Any
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
 from lcpstep.faults import LOCAL, Fault, cause, interrupted, note
 
-EXPECTED = False  # until there is a function that C calls: handlers take their time
+P = ParamSpec("P")
+T = TypeVar("T")
 BETWEEN: set[CodeType] = set()  # of functions that C calls, and that call the user's
 
 
@@ -61,17 +62,15 @@ class Open(threading.local):
 OPEN = Open()
 
 
-def expect() -> None:
-    """A function that C calls has been made: from now on runs hear interrupts there, the one under way as well."""
-    global EXPECTED
-    EXPECTED = True
-    if OPEN.runs:
+def listen() -> None:
+    """C has called a function: from now on the run under way hears interrupts there."""
+    if OPEN.handler is None and OPEN.runs:
         _begin()
 
 
 def _begin() -> None:
     """Hear interrupts wherever they come; only the main thread is told of them."""
-    if OPEN.handler is not None or threading.current_thread() is not threading.main_thread():
+    if threading.current_thread() is not threading.main_thread():
         return
     before = signal.getsignal(signal.SIGINT)
     if callable(before):
@@ -86,17 +85,20 @@ def _end() -> None:
         signal.signal(signal.SIGINT, own.before)
 
 
-@contextmanager
-def hearing() -> Generator[None, None, None]:
-    """A run, in which interrupts are heard wherever they come."""
-    OPEN.runs += 1
-    try:
-        if EXPECTED:
-            _begin()
-        yield
-        if interrupted():  # by what was called beside the motion
-            cause()
-    finally:
-        OPEN.runs -= 1
-        if OPEN.runs == 0:
-            _end()
+def hearing(run: Callable[P, T]) -> Callable[P, T]:
+    """A function that makes a run, in which interrupts are heard wherever they come."""
+
+    @wraps(run)
+    def heard(*given: P.args, **named: P.kwargs) -> T:
+        OPEN.runs += 1
+        try:
+            made = run(*given, **named)
+            if interrupted():  # by what was called beside the motion
+                cause()
+            return made
+        finally:
+            OPEN.runs -= 1
+            if OPEN.runs == 0 and OPEN.handler is not None:
+                _end()
+
+    return heard

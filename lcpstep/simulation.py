@@ -66,7 +66,7 @@ def simulate(
     progress: Callable[[float], None] | None = None,
     error: bool = False,
 ) -> HybridTrajectory: ...
-@hearing()
+@hearing
 def simulate(
     scene: Scene | HybridScene,
     method: Method,
