@@ -11,7 +11,6 @@ contacts that rest neither. Source: as of `lcpstep.stepping.theta_method.repair`
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, overload
 
@@ -25,6 +24,7 @@ from lcpstep.errors import LcpStepError
 from lcpstep.lcp import solve_lcp
 from lcpstep.model import dense
 from lcpstep.trajectory import Kind
+from lcpstep.warned import warn
 
 if TYPE_CHECKING:
     from lcpstep.events.hybrid.trajectory import HybridTrajectory
@@ -165,10 +165,8 @@ def _tell(scene: Scene, before: Rows, after: Rows, slack: float) -> None:
     ]
     if said:
         more = f" and {len(said) - MOST} more" if len(said) > MOST else ""
-        warnings.warn(
-            f"the end of the run of {scene.name!r} was put back onto {', '.join(said[:MOST])}{more}",
-            PutBack,
-            stacklevel=4,
+        warn(
+            f"the end of the run of {scene.name!r} was put back onto {', '.join(said[:MOST])}{more}", PutBack
         )
 
 

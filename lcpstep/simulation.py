@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Protocol, cast, overload
@@ -26,6 +25,7 @@ from lcpstep.resolution import unresolved
 from lcpstep.shared_normals import slide_on_one
 from lcpstep.trajectory import Status
 from lcpstep.turned import turned
+from lcpstep.warned import warn
 
 if TYPE_CHECKING:
     from lcpstep.events.hybrid.trajectory import HybridTrajectory
@@ -254,7 +254,7 @@ def _warn_of_fast_gaps(run: Trajectory) -> None:
 
     words = fast_gap(run)
     if words:
-        warnings.warn(f"{run.scene.name!r}: {words}", FastTurn, stacklevel=4)
+        warn(f"{run.scene.name!r}: {words}", FastTurn)
 
 
 def _raised(run: Any, message: str) -> SimulationError:

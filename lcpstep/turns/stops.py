@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import functools
 import math
-import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +18,7 @@ from lagrangian import Scene
 from lcpstep.intervals import NotEnclosed
 from lcpstep.turns.refine import APART, JUMP, LITTLE, MUCH, Leaves, jump_times, leaves
 from lcpstep.turns.source import Source, belts, sources
+from lcpstep.warned import warn
 
 Array = NDArray[np.float64]
 PER_PERIOD, PER_SPAN = 16, 50  # intervals of the scan in a period, or in a span without one
@@ -69,7 +69,7 @@ def turns(scene: Scene, with_belts: bool = False) -> Turns:
     span = (0.0, scene.period) if math.isfinite(scene.period) else scene.t_span
     result = _remembered(tuple(Key(x) for x in found), span, scene.period, tuple(corners.tolist()))
     if result.sampled:
-        warnings.warn(f"{scene.name!r}: {result.sampled}", FastTurn, stacklevel=6)
+        warn(f"{scene.name!r}: {result.sampled}", FastTurn)
     return result
 
 

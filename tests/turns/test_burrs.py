@@ -129,6 +129,10 @@ def test_where_samples_alone_tell_a_warning_names_what_turns():
 
     with pytest.warns(FastTurn, match=r"contacts.motion turns within .* s.*unknown .*corners"):
         turns(oscillator(unknown, [0.1, 0.05, 4.0], 0.0))
+    for method in (EventDriven(), Located(1e-2)):
+        with pytest.warns(FastTurn) as heard:
+            simulate(oscillator(unknown, [0.1, 0.06, 4.0], 0.0), method, keep="impacts")
+        assert heard[0].filename == __file__  # the line that calls, however deep inside the warning is
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         turns(oscillator(unknown, [0.0, 1.0, 4.0], 0.0))

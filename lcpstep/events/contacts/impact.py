@@ -74,12 +74,20 @@ def strike(s: Rubbing, t: float, plastic: bool) -> bool:
     """The impact of contacts that are closed or approach, or a plastic one of all that touch; False: none found.
 
     What is held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, the
-    impact is a plastic one.
+    impact is a plastic one. With friction there are some that are hard to find.
     """
     look_before(s)
-    if strike_together(s, t, plastic):
-        return True
-    return not plastic and strike_together(s, t, True)
+    found = strike_by_either(s, t, plastic)
+    if not found and s.n_t > 0:
+        s.problem.work.thorough = True
+        found = strike_by_either(s, t, plastic)
+        s.problem.work.thorough = False
+    return found
+
+
+def strike_by_either(s: Rubbing, t: float, plastic: bool) -> bool:
+    """By its own law, if not `plastic`, or a plastic one."""
+    return strike_together(s, t, plastic) or (not plastic and strike_together(s, t, True))
 
 
 def look_before(s: Rubbing) -> None:
