@@ -3,15 +3,20 @@
 import numpy as np
 import pytest
 
-from lcpstep import Status, simulate
+from lcpstep import Located, Status, simulate
 from tests.random_heaps import METHODS, energy, heap
 
 
-@pytest.mark.parametrize("seed", [17, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 7, 26, 45, 52))])
+@pytest.mark.parametrize(
+    "seed", [17, 110, 187, *(pytest.param(k, marks=pytest.mark.slow) for k in (0, 2, 7, 26, 45, 52))]
+)
 def test_heaps_settle_by_every_method_alike(seed):
-    """Hops faded until numbers had no digits, and their impacts no answer (2); what only others press hopped on by
-    rounding (45); one that falls along a wall, unpressed, had what sticks decided by forces to come (52).
+    """What went wrong, by heap.
 
+    0: an impact at a hop's end took one along that came 70 hops later. 2: hops faded until numbers had no digits, and
+    their impacts no answer. 45: what only others press hopped on by rounding. 52: one that falls along a wall,
+    unpressed, had what sticks decided by forces to come. 110: accelerations that are rounding beside others left no
+    forces. 187: a contact whose load had gone opened by rounding, and was missed by the next impact.
     Heap 45 is compared before 0.6 s, for rounding makes 1e-2 of itself later: hops that meet are struck together.
     """
     true = simulate(heap(seed), METHODS[0])
@@ -21,3 +26,8 @@ def test_heaps_settle_by_every_method_alike(seed):
         assert np.max(np.diff(energy(run))) < 1e-6
         t = 0.6 if seed == 45 else 1.0
         np.testing.assert_allclose(run.at(t)[0], true.at(t)[0], rtol=0, atol=3e-6)
+
+
+def test_impulses_that_are_hard_to_find():
+    """Contacts that hold each other at rest: every pivoting rule met a ray, in the heap of one step size."""
+    assert simulate(heap(110), Located(1e-3)).status is Status.DONE
