@@ -143,6 +143,7 @@ class ParameterStudy:
         make: Callable[[Mapping[str, Any]], Scene],
         progress: Callable[[int, int], None] | None = None,
         kept: Callable[[int, Trajectory], None] | None = None,
+        found: Callable[[int, Scene], Trajectory | None] | None = None,
     ) -> Any:
         """Run every combination.
 
@@ -151,6 +152,8 @@ class ParameterStudy:
         make : from parameters to the scene
         progress : called with the runs that are done, and all
         kept : called with the number of each run and its trajectory, all steps of it
+        found : the run of that number and scene that has been made before, all steps of it, or None; asked for all
+            before any work starts, so that it may refuse, and for each again where it is needed
 
         Returns
         -------
@@ -177,11 +180,14 @@ class ParameterStudy:
                 f"measures: {', '.join(wide)}: the scenes have {', '.join(map(str, counts))} coordinates, which "
                 f"make no array; leave them out"
             )
+        there = {k for k, scene in enumerate(scenes) if found is not None and found(k, scene) is not None}
         rows, ended = [], []
         for k, scene in enumerate(scenes):
-            run = self._one(scene, 1 if kept or self.tells_errors or "penetration" in measures else None)
-            if kept is not None:
-                kept(k, run)
+            run = found(k, scene) if found is not None and k in there else None
+            if run is None:
+                run = self._one(scene, 1 if kept or self.tells_errors or "penetration" in measures else None)
+                if kept is not None:
+                    kept(k, run)
             rows.append({name: _measured(name, run) for name in measures})
             ended.append(run.status.name)
             if progress is not None:

@@ -5,8 +5,8 @@ import pytest
 import xarray
 
 from lagrangian import scenes
-from lcpstep import Moreau, UnknownName, load, simulate
-from lcpstep.cli.common import DONE, FAILED, USAGE
+from lcpstep import Moreau, UnknownName, load, parameters, simulate
+from lcpstep.cli.common import DONE, FAILED, INTERRUPTED, USAGE
 from lcpstep.parameters import ParameterStudy
 from tests.commands import run
 
@@ -55,6 +55,40 @@ def test_a_study_is_run_over_all_combinations_and_its_result_carries_it(folder, 
     assert status == USAGE
     assert "out.nc exists already; --overwrite replaces it" in err
     assert run(capsys, "run", "study.toml", "--overwrite")[0] == DONE
+
+
+def test_a_study_that_was_interrupted_goes_on_with_the_runs_there_are(folder, capsys, monkeypatch):
+    (folder / "study.toml").write_text(TEXT + 'file = "out.nc"\nruns = "runs"\n')
+    calls = 0
+
+    def third(*given, **named):
+        nonlocal calls
+        calls += 1
+        if calls == 3:
+            raise KeyboardInterrupt
+        return simulate(*given, **named)
+
+    monkeypatch.setattr(parameters, "simulate", third)
+    status, _, err = run(capsys, "run", "study.toml")
+    assert status == INTERRUPTED
+    assert err.splitlines()[-2:] == [
+        "lcpstep: kept: 2 runs in runs",
+        "lcpstep: go on with: lcpstep run study.toml",
+    ]
+    assert run(capsys, "run", "study.toml")[0] == DONE
+    assert calls == 3 + 6  # 8 runs, two of which there were
+    with xarray.open_dataset("out.nc") as data:
+        before = data.load()
+    (folder / "out.nc").unlink()
+    assert run(capsys, "run", "study.toml")[0] == DONE
+    assert calls == 3 + 6
+    with xarray.open_dataset("out.nc") as data:
+        xarray.testing.assert_identical(data.drop_attrs(), before.drop_attrs())
+    (folder / "out.nc").unlink()
+    (folder / "study.toml").write_text((TEXT + 'runs = "runs"\n').replace("t_end = 0.6", "t_end = 0.5"))
+    status, _, err = run(capsys, "run", "study.toml")
+    assert status == USAGE
+    assert "run-0000.nc: no run of this study; --overwrite replaces it (scene: it is not the one" in err
 
 
 def test_own_scenes_and_runs_that_fail(folder, capsys):

@@ -14,9 +14,11 @@ from lcpstep.cli.common import DONE, FAILED, made_scene, parameters_of, save_fig
 from lcpstep.cli.studies import parts_bar
 from lcpstep.errors import UnknownName
 from lcpstep.parameters import ParameterStudy
+from lcpstep.saving import load
 from lcpstep.trajectory import Status, Trajectory
 
 SHOWN = 20  # lines of the table that are printed
+NAME = "run-{:04}.nc"  # of a run by its number
 
 
 def add(commands: Any) -> None:
@@ -55,14 +57,18 @@ def run_file(options: argparse.Namespace) -> int:
         raise ValueError(
             f"{options.file.name}: [outputs]: picture: expected a parameter in [sweep] to draw over"
         )
-    kept = None if "runs" not in names else _keeper(names["runs"], options.overwrite)
+    kept = found = None
+    if "runs" in names:
+        kept = _keeper(names["runs"], options.overwrite)
+        found = None if options.overwrite else _finder(names["runs"], study)
+        interrupt.keeps(options, lambda: _kept_in(names["runs"]))
 
     def make(values: Mapping[str, Any]) -> Scene:
         made: Scene = made_scene(scene, values, study.t_end)
         return made
 
     with parts_bar(options.file.name) as progress:
-        result = study.run(make, progress, kept)
+        result = study.run(make, progress, kept, found)
     _write(result, study, names, options.overwrite)
     return DONE if all(x == Status.DONE.name for x in result.status.values.ravel()) else FAILED
 
@@ -72,9 +78,37 @@ def _keeper(folder: Path, overwrite: bool) -> Any:
 
     def keep(k: int, run: Trajectory) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        interrupt.wrote(run.save(folder / f"run-{k:04}.nc", overwrite=overwrite))
+        run.save(folder / NAME.format(k), overwrite=overwrite)
 
     return keep
+
+
+def _finder(folder: Path, study: ParameterStudy) -> Any:
+    """What finds the runs of the same study that was interrupted."""
+
+    def find(k: int, scene: Scene) -> Trajectory | None:
+        file = folder / NAME.format(k)
+        if not file.exists():
+            return None
+        try:
+            run: Trajectory = load(file, scene)
+        except ValueError as error:
+            raise FileExistsError(
+                f"{file}: no run of this study; --overwrite replaces it ({error})"
+            ) from None
+        if run.method != study.method:
+            raise FileExistsError(f"{file}: a run by {run.method}; --overwrite replaces it")
+        if study.tells_errors and run.error is None and run.status is Status.DONE:
+            raise FileExistsError(f"{file}: a run without an error bar; --overwrite replaces it")
+        return run
+
+    return find
+
+
+def _kept_in(folder: Path) -> str:
+    """How many runs are there, in words."""
+    n = len(list(folder.glob("run-*.nc")))
+    return f"{n} runs in {folder}" if n else ""
 
 
 def _write(result: Any, study: ParameterStudy, names: Mapping[str, Path], overwrite: bool) -> None:
