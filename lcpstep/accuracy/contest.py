@@ -137,10 +137,13 @@ def contest(scene: Scene, methods: Sequence[Method], progress: Progress | None =
 
     Raises
     ------
+    ValueError   no methods
     LcpStepError   no method treats the scene
     Everything that `lcpstep.simulate` raises about a run.
     """
     checks.instance("scene", scene, Scene)
+    if not methods:
+        raise ValueError("methods: expected at least one method")
     tell = progress or (lambda t: None)
     t = np.linspace(*scene.t_span, LOOKS)
     reasons = {k: _refused(scene, method) for k, method in enumerate(methods)}

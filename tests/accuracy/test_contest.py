@@ -39,6 +39,8 @@ def test_what_is_refused_says_why_and_what_nothing_treats_is_an_error():
     found = contest(scenes.coulomb_oscillator(t_end=3.0), [*METHODS, EXACT])
     assert [bool(x.reason) for x in found.entrants] == [False, False, False, False, True]
     assert "friction" in found.entrants[-1].reason
+    with pytest.raises(ValueError, match="methods: expected at least one method"):
+        contest(scenes.coulomb_oscillator(), [])
     with pytest.raises(LcpStepError, match="no method treats 'coulomb-oscillator'"):
         contest(scenes.coulomb_oscillator(t_end=3.0), [EXACT])
 
