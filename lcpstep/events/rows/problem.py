@@ -17,6 +17,8 @@ from lcpstep.kernels.coulomb import solve_contacts
 from lcpstep.kernels.vectors import clear, largest
 from lcpstep.pointers import Indices, abs, after
 
+SMALL = 1e-12  # of the largest acceleration: as much as differences of callbacks leave of one that is none
+
 
 def row_of(s: Contacts, a: int, n_a: int) -> int:
     """The row of unknown a of the problem: normals of n_a contacts, then tangents of those that may stick."""
@@ -81,7 +83,7 @@ def solve_forces(s: Contacts, n_a: int, n_f: int) -> bool:
 
 def leave_out_small(s: Contacts, m: int) -> bool:
     """Take accelerations for none that are rounding of the largest; whether there are any."""
-    none, some = NOISE * largest(s.problem.rate, 0.0, m), False
+    none, some = SMALL * largest(s.problem.rate, 0.0, m), False
     for a in range(m):
         if s.problem.rate[a] != 0.0 and abs(s.problem.rate[a]) <= none:
             s.problem.rate[a], some = 0.0, True
