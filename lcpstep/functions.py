@@ -25,15 +25,8 @@ import numpy as np
 from lcpstep import fingerprint
 from lcpstep.errors import LcpStepError
 
-READS = (
-    "get",
-    "items",
-    "keys",
-    "values",
-    "index",
-    "count",
-    "copy",
-)  # methods that leave what they are of as it is
+# Methods that leave what they are of as it is
+READS = ("get", "items", "keys", "values", "index", "count", "copy")
 HOLDERS = (list, tuple, set, frozenset, Mapping, np.ndarray)
 OWN = ("lagrangian.scenes.", "lagrangian.profiles")  # where functions are taken from by their name alone
 
@@ -98,12 +91,33 @@ def _of_object(f: Any) -> str:
     method = f if isinstance(f, MethodType) else getattr(f, "__call__", None)  # noqa: B004
     if not isinstance(method, MethodType) or not isinstance(method.__func__, FunctionType):
         return ""
-    held = {
-        name: x
-        for name, x in getattr(f, "__self__", f).__dict__.items()
-        if name not in written(method.__func__)
-    }
-    return hashlib.sha256(f"{checksum(method.__func__)} {told(held, method.__module__)}".encode()).hexdigest()
+    own = method.__self__
+    called = _methods(own if isinstance(own, type) else type(own), method.__func__)
+    changed = frozenset[str]().union(*(written(g.__code__) for g in called))
+    held = {name: x for name, x in _attributes(own).items() if name not in changed}
+    text = f"{sorted(map(checksum, called))} {told(held, method.__module__)}"
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _methods(kind: type, f: FunctionType) -> set[FunctionType]:
+    """A method and those of its class that it names, theirs, and so on: they may write into the object as well."""
+    found, todo = set(), [f]
+    while todo:
+        g = todo.pop()
+        if g not in found:
+            found.add(g)
+            named = [
+                getattr(kind, name, None) for code in fingerprint.codes(g.__code__) for name in code.co_names
+            ]
+            todo += [h for h in named if isinstance(h, FunctionType)]
+    return found
+
+
+def _attributes(x: Any) -> dict[str, Any]:
+    """Those of an object, in its slots as well."""
+    state: Any = object.__getstate__(x)
+    parts = state if isinstance(state, tuple) else (state,)
+    return {name: value for part in parts for name, value in (part or {}).items()}
 
 
 def read_values(f: FunctionType) -> list[str]:
@@ -119,7 +133,9 @@ def read_values(f: FunctionType) -> list[str]:
         texts[name] = fingerprint.value_text(x)
         if fingerprint.UNKNOWN in texts[name]:
             known = isinstance(x, HOLDERS) or _own(x, f.__module__)
-            texts[name] = told(x, f.__module__) if known and name.split(".")[0] not in written(f) else ""
+            texts[name] = (
+                told(x, f.__module__) if known and name.split(".")[0] not in written(f.__code__) else ""
+            )
     return sorted(f"{name}={text}" for name, text in texts.items() if text)
 
 
@@ -140,7 +156,7 @@ def told(x: Any, module: str, within: tuple[int, ...] = ()) -> str:
     if isinstance(x, (set, frozenset)):
         return f"{kind} {sorted(told(y, module, inside) for y in x)}"
     if _own(x, module):
-        return f"{kind} {told(getattr(x, '__dict__', None), module, inside)}"
+        return f"{kind} {told(_attributes(x), module, inside)}"
     return kind
 
 
@@ -150,10 +166,10 @@ def _own(x: Any, module: str) -> bool:
 
 
 @functools.cache
-def written(f: FunctionType) -> frozenset[str]:
-    """Names of what f writes into or may change by a method, and of attributes that it sets."""
+def written(code: CodeType) -> frozenset[str]:
+    """Names of what code writes into or may change by a method, and of attributes that it sets."""
     try:
-        nodes = ast.walk(ast.parse(source_of(f.__code__)))
+        nodes = ast.walk(ast.parse(source_of(code)))
     except SyntaxError:  # the line of a lambda, cut out of what is around it: it cannot set anything
         return frozenset()
     return frozenset(name for node in nodes for name in _written_by(node))

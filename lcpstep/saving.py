@@ -193,9 +193,8 @@ def _check_scene(scene: Any, tree: Any, arrays: Mapping[str, np.ndarray]) -> Non
     mine, other = _leaves(describer.tree(scene, "scene"), describer.arrays), _leaves(tree, arrays)
     for place in sorted(set(mine) | set(other)):
         a, b = mine.get(place), other.get(place)
-        untold = place.endswith(".sha256") and not (
-            a and b
-        )  # of an object that is called, in a file of before
+        # Of an object that is called there is none in a file of before
+        untold = place.endswith(".sha256") and not (a and b)
         if a != b and not untold and not _aside(place):
             name = place.strip(".").removesuffix(".sha256")
             raise ValueError(f"scene: it is not the one of the file, {name} is another")

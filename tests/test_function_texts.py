@@ -48,6 +48,29 @@ class Pull:
         out[0] = -self.k * q[0]
 
 
+class Counting(Pull):
+    """The same, by a method of its own."""
+
+    def __call__(self, t, q, v, p, out):
+        self.count()
+        out[0] = -self.k * q[0]
+
+    def count(self):
+        self.asked += 1
+
+
+class Slotted:
+    """A force whose attributes have slots."""
+
+    __slots__ = ("__weakref__", "k")
+
+    def __init__(self, k):
+        self.k = k
+
+    def __call__(self, t, q, v, p, out):
+        out[0] = -self.k * q[0]
+
+
 TABLE, NESTED, SPRING, CALLS, COUNT = {"k": [4.0, 5.0]}, ([1.0], {"k": 4.0}), Spring(), [], {"n": 0}
 
 
@@ -83,17 +106,21 @@ def test_lists_dictionaries_and_objects_are_read_with_all_they_hold(monkeypatch)
     assert all(functions.checksum(f) != old for f, old in zip(FORCES, before, strict=True))
 
 
-def test_what_a_function_counts_makes_no_other_function_of_it():
-    pull = Pull(4.0)
+@pytest.mark.parametrize("pull", [Pull(4.0), Counting(4.0)], ids=["at once", "by a method"])
+def test_what_a_function_counts_makes_no_other_function_of_it(pull):
     before = functions.checksum(sprung), checksum(scene_of(pull))
     sprung(0.0, [1.0], [0.0], [], [0.0])
     pull(0.0, [1.0], [0.0], [], [0.0])
     assert (functions.checksum(sprung), checksum(scene_of(pull))) == before
 
 
-def test_objects_that_are_called_and_methods_are_told_by_their_attributes():
-    assert checksum(scene_of(Pull(4.0))) == checksum(scene_of(Pull(4.0)))
-    assert checksum(scene_of(Pull(4.0))) != checksum(scene_of(Pull(5.0)))
+@pytest.mark.parametrize("kind", [Pull, Counting, Slotted])
+def test_objects_that_are_called_are_told_by_their_attributes(kind):
+    assert checksum(scene_of(kind(4.0))) == checksum(scene_of(kind(4.0)))
+    assert checksum(scene_of(kind(4.0))) != checksum(scene_of(kind(5.0)))
+
+
+def test_methods_are_told_by_the_attributes_of_their_object():
     assert checksum(scene_of(Pull(4.0).pull)) == checksum(scene_of(Pull(4.0).pull))
     assert checksum(scene_of(Pull(4.0).pull)) != checksum(scene_of(Pull(5.0).pull))
 
