@@ -228,8 +228,7 @@ def test_steps_that_stop_at_a_corner_are_not_said_to_gain_what_a_push_gives(meth
     assert m.at(2.35)[0][0] == pytest.approx(0.5 * 100.0 * 0.005**2, abs=1e-12)
     times = np.linspace(2.345, 2.367, 2001)
     true = np.where(times < 2.355, 50.0 * (times - 2.345) ** 2, times - 2.35)
-    error = np.max(
-        np.abs(m.at(times)[0][:, 0] - true)
-    )  # of order 2 within the step, which bends at the corner
+    # Of order 2 within the step, which bends at the corner
+    error = np.max(np.abs(m.at(times)[0][:, 0] - true))
     bar = simulate(scene, method, error=True).error.position.sup
     assert error < 1e-13 or 0.5 < error / bar < 2.0

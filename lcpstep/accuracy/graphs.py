@@ -80,14 +80,11 @@ def hausdorff(a: Graph, b: Graph, least: float = 0.0) -> float:
 def farthest(a: Graph, b: Graph, bound: float, rounding: float, nodes: Indices, pieces: Doubles) -> float:
     """The largest distance of a point of a from b, or the bound if that is larger."""
     n, last = a.n, b.n - 2
-    segment = nearest(
-        b, a.x[n - 1], a.y[n - 1], bound, last, nodes
-    )  # beyond an end the other graph does not go on
+    # Beyond an end the other graph does not go on
+    segment = nearest(b, a.x[n - 1], a.y[n - 1], bound, last, nodes)
     bound = max(bound, to_segment(b, segment, a.x[n - 1], a.y[n - 1]))
-    i, ahead = (
-        0,
-        0,
-    )  # ahead of the same place in b lies what is nearest by so much: a point later by hardly another
+    # Ahead of the same place in b lies what is nearest by so much: a point later by hardly another
+    i, ahead = 0, 0
     while i < n:
         segment = nearest(b, a.x[i], a.y[i], bound, i if i < last else last, nodes)
         bound = max(bound, to_segment(b, segment, a.x[i], a.y[i]))
