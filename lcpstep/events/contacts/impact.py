@@ -77,8 +77,12 @@ def strike(s: Rubbing, t: float, plastic: bool) -> bool:
     impact is a plastic one. With friction there are some that are hard to find.
     """
     look_before(s)
+    copy_indices(s.tried, s.mode, s.n_c)
     found = strike_by_either(s, t, plastic)
     if not found and s.n_t > 0:
+        copy_indices(
+            s.mode, s.tried, s.n_c
+        )  # plastic ones have closed all that touch, and not only what is struck
         s.problem.work.thorough = True
         found = strike_by_either(s, t, plastic)
         s.problem.work.thorough = False
