@@ -9,7 +9,6 @@ out, and no circle of friction comes of it.
 
 from __future__ import annotations
 
-import itertools
 from typing import Any
 
 import numpy as np
@@ -24,6 +23,7 @@ PLACES = 3  # of these, at which normals that are functions are compared
 SAME = 1e-12  # of a normal's squared size: what another one has across it
 ALIKE = 1e-6  # of a tangent's size: what it has beside the normal and another tangent
 SLIDES = 5e-2  # of the terms of sliding velocities: steps leave less of what sticks
+AT_REST = 1e-9  # of the speed that forces would give: velocities of what rests are nothing but rounding
 
 
 def slide_on_one(run: Trajectory) -> str:
@@ -37,9 +37,11 @@ def slide_on_one(run: Trajectory) -> str:
     places = looked[:1] if isinstance(contacts, LinearContacts) else looked[:: max(1, len(looked) // PLACES)]
     try:
         pairs = {x for k in places for x in _pairs(run.scene, *_state(run, k))}
+        least = _of_rest(run) if pairs else 0.0
         for k in looked if pairs else ():
             for c, d in sorted(pairs):
-                if run.impulse[k, c] + run.impulse[k, d] > 0.0 and _slides(run.scene, _state(run, k), c, d):
+                loaded = run.impulse[k, c] + run.impulse[k, d] > 0.0
+                if loaded and _slides(run.scene, _state(run, k), c, d, least):
                     return (
                         f"contacts {c} and {d} share their normal, and not their tangents, and slide at t = "
                         f"{run.t[k]:.9g} s: no law says which of them carries the load, so that their friction is "
@@ -55,6 +57,14 @@ def _state(run: Trajectory, k: int) -> tuple[float, Array, Array]:
     return float(run.t[k]), run.q[k].copy(), run.v[k].copy()
 
 
+def _of_rest(run: Trajectory) -> float:
+    """The velocity of a coordinate that is none."""
+    from lcpstep.errorbar.distance import fall
+    from lcpstep.model import looked_at
+
+    return AT_REST * fall(looked_at(run.scene), run)
+
+
 def _pairs(scene: Scene, t: float, q: Array, v: Array) -> list[tuple[int, int]]:
     """Rough contacts at one place with one normal, of which the rows of friction differ."""
     contacts, p = scene.contacts, np.array(scene.p)
@@ -65,15 +75,13 @@ def _pairs(scene: Scene, t: float, q: Array, v: Array) -> list[tuple[int, int]]:
     sizes = np.sum(N * N, axis=1)
     across = np.outer(sizes, sizes) - np.maximum(N @ N.T, 0.0) ** 2
     near = (across <= SAME * np.outer(sizes, sizes)) & np.outer(rough, rough) & (np.outer(sizes, sizes) > 0.0)
-    if np.count_nonzero(near) <= np.count_nonzero(np.diag(near)):
-        return []
     g, T = scene.gap(t, q, v)[0], np.asarray(friction.tangents((t, q, v, p), len(N)))
     g = g / np.sqrt(np.maximum(sizes, np.finfo(float).tiny))
     scale = 1e-8 * max(1.0, float(np.max(np.abs(q))))
     return [
         (c, d)
-        for c, d in itertools.combinations(range(len(N)), 2)
-        if near[c, d] and abs(g[c] - g[d]) <= scale and _differ(N[c], T[c], T[d])
+        for c, d in np.argwhere(np.triu(near, 1)).tolist()
+        if abs(g[c] - g[d]) <= scale and _differ(N[c], T[c], T[d])
     ]
 
 
@@ -85,12 +93,12 @@ def _differ(N: Array, T: Array, other: Array) -> bool:
     return bool(sizes > 0.0 and abs(one @ two) < (1.0 - ALIKE) * sizes)
 
 
-def _slides(scene: Scene, at: tuple[float, Array, Array], c: int, d: int) -> bool:
-    """Whether one of the two has a sliding velocity."""
+def _slides(scene: Scene, at: tuple[float, Array, Array], c: int, d: int, least: float) -> bool:
+    """Whether one of the two has a sliding velocity, where coordinates have more than this."""
     contacts, p = scene.contacts, np.array(scene.p)
     assert contacts is not None
     assert contacts.friction is not None
     u = contacts.friction.sliding(*at, p, contacts.n_c)
     T = np.asarray(contacts.friction.tangents((*at, p), contacts.n_c))
-    terms = np.abs(T) @ np.abs(at[2]) + np.abs(u - T @ at[2])
+    terms = np.abs(T) @ np.maximum(np.abs(at[2]), least / SLIDES) + np.abs(u - T @ at[2])
     return bool(max(abs(u[c]), abs(u[d])) > SLIDES * max(terms[c], terms[d]))

@@ -42,6 +42,26 @@ def test_what_sticks_or_slides_in_one_direction_or_on_two_normals_is_not(method,
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_rounding_of_what_rests_on_a_slope_is_no_sliding(method):
+    n, along = np.array([0.6, 0.0, 0.8]), [[0.8, 0.0, -0.6], [0.0, 1.0, 0.0]]
+    assert simulate(puck(1.0, along, np.zeros(3), (0.3, 0.1, 0.0), G=[n, n]), method).doubt == ""
+
+
+@pytest.mark.parametrize("theta", [0.5, 1.0])
+def test_a_contact_that_parts_takes_no_share_of_a_load(theta):
+    # the obstacle of the second one sinks by 1 m/s^2
+    def sinks(t, q, v, p, out):
+        out[:] = 0.0
+        out[1, 0], out[1, 1], out[1, 2] = -0.5 * t * t, -t, -1.0
+
+    friction = Coulomb(1.0, SIDEWAYS)
+    contacts = LinearContacts(FLOOR, motion=sinks, friction=friction)
+    pushed = LinearSystem(np.eye(3), force=np.array([1.0, 0.0, -9.81]))
+    run = simulate(Scene(pushed, np.zeros(3), np.zeros(3), (0.0, 0.05), contacts), Moreau(1e-2, theta=theta))
+    assert run.impulse[1:] == pytest.approx(np.tile([0.0981, 0.0], (len(run.t) - 1, 1)), abs=1e-12)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_the_same_in_a_bowl(method):
     def gap(t, q, v, p, out):
         out[0] = out[1] = 1.0 - math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2])

@@ -129,8 +129,8 @@ def share_evenly(c: ContactProblem, n_a: int, n_f: int) -> None:
     for f in range(n_f):
         for h in range(f):
             a, b, S, T = c.carrier[h], c.carrier[f], n_a + h, n_a + f
-            pressed = c.impulse[a] > 0.0 or c.impulse[b] > 0.0
-            if pressed and c.mu[c.ids[a]] > 0.0 and c.mu[c.ids[b]] > 0.0 and are_one(c, a, b, m):
+            rough = c.mu[c.ids[a]] > 0.0 and c.mu[c.ids[b]] > 0.0
+            if rough and are_one(c, a, b, m) and is_loaded(c, a, n_a, n_f) and is_loaded(c, b, n_a, n_f):
                 across = c.mobility[S * m + S] * c.mobility[T * m + T] - c.mobility[S * m + T] ** 2
                 crossed = across > DEGENERATE * c.mobility[S * m + S] * c.mobility[T * m + T]
                 if crossed and is_kept(c, c.impulse, a, S, m) and is_kept(c, c.impulse, b, T, m):
