@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from lagrangian import LinearContacts, LinearJoints, LinearSystem, System
-from lcpstep.corner_times import corner_times
+from lcpstep.corner_times import corners_before
 from lcpstep.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -128,9 +128,8 @@ def _smooth(run: Trajectory, h: float, k: Any) -> Any:
         last = np.searchsorted(events, t[k], side="right")
         after = (last > 0) & (events[last - 1] == t[k]) & (way < h)
         fits |= after & (last == np.searchsorted(events, t[k + 1] + near))
-    corners = corner_times(run.scene, float(t[-1]), len(t))
-    if len(corners) and hasattr(run.method, "order"):  # it stops there, and forces at both ends tell nothing
-        fits &= np.searchsorted(corners, t[k] - near) == np.searchsorted(corners, t[k + 1] + near)
+    if hasattr(run.method, "order"):  # it stops at corners, and forces at both ends tell nothing
+        fits &= corners_before(run.scene, t[k] - near) == corners_before(run.scene, t[k + 1] + near)
     contacts = run.scene.contacts
     if contacts is not None and (contacts.friction is not None or driven(contacts)):
         fits &= ~run.impulse[k + 1].any(axis=1)

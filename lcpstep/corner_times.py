@@ -22,3 +22,13 @@ def corner_times(scene: Scene, end: float, most: int) -> Array:
         last = min(math.floor(end / scene.period), first + most // len(own) + 1)
         own = (np.arange(first, last + 1)[:, None] * scene.period + own).ravel()
     return np.asarray(own[(own > start) & (own < end)][:most])
+
+
+def corners_before(scene: Scene, t: Array) -> Array:
+    """How many there are before each of some times, whole numbers, from any one time on."""
+    own = np.asarray(scene.corners, dtype=np.float64)
+    turn = np.zeros(len(t))
+    if math.isfinite(scene.period):
+        turn = np.floor(t / scene.period)
+        t = t - turn * scene.period
+    return np.asarray(turn * len(own) + np.searchsorted(own, t), dtype=np.float64)

@@ -232,3 +232,13 @@ def test_steps_that_stop_at_a_corner_are_not_said_to_gain_what_a_push_gives(meth
     error = np.max(np.abs(m.at(times)[0][:, 0] - true))
     bar = simulate(scene, method, error=True).error.position.sup
     assert error < 1e-13 or 0.5 < error / bar < 2.0
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_corners_are_known_where_states_are_kept_late(order):
+    def pushes(t, q, v, p, out):
+        out[0] = 100.0 if 0.0345 <= t % 0.05 < 0.0355 else 0.0
+
+    h = 1.0 / 60.0
+    scene = Scene(System(1, one, pushes), 0.0, 0.0, (0.0, 5.0), corners=[0.0345, 0.0355], period=0.05)
+    assert simulate(scene, Located(h, order), keep=np.arange(280, 300) * h).doubt == ""
