@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.accuracy.errors import Difference
+from lcpstep.accuracy.errors import Difference, Motion
 from lcpstep.accuracy.horizon import LOST, Growth, growth
 from lcpstep.accuracy.reference import TIGHTEST, Reference, alike
 from lcpstep.accuracy.work_precision import UNFIT, Study
@@ -30,8 +30,7 @@ def allow_for_rounding(scene: Scene, found: Reference, result: Study) -> None:
     """No motion is known better than its numbers are rounded."""
     if found.motion is None:
         return
-    t = np.linspace(scene.t_span[0], min(scene.t_span[1], float(found.motion.t[-1])), LOOKS)
-    q, v = (float(np.max(np.abs(x))) for x in found.motion.at(t))
+    q, v = _sizes(scene, found.motion)
     sizes = {"sup_position": q, "l1_velocity": v * float(np.ptp(scene.t_span)), "graph_distance": v}
     for measure in set(sizes) & set(result.measures):
         known = result.uncertainty.get(measure, 0.0)
@@ -39,14 +38,17 @@ def allow_for_rounding(scene: Scene, found: Reference, result: Study) -> None:
 
 
 def mark_rounding(scene: Scene, found: Reference, result: Study) -> None:
-    """Mark errors that are nothing but rounding: of the finest levels of a method, where they have ceased to fall,
-    and are no larger than what so many steps round.
+    """Mark errors that are nothing but rounding, of the finest levels of a method.
+
+    They have ceased to fall, and are no larger than what so many steps round. What levels of a file were marked as
+    counts for nothing: there may be finer ones now.
     """
+    result.levels[:] = [replace(x, rounded=()) for x in result.levels]
     if found.motion is None:
         return
-    start, end = scene.t_span[0], min(scene.t_span[1], float(found.motion.t[-1]))
-    q, v = (float(np.max(np.abs(x))) for x in found.motion.at(np.linspace(start, end, LOOKS)))
-    of_a_step = EPSILON * max(q, v * max(abs(start), abs(end)))
+    q, v = _sizes(scene, found.motion)
+    latest = max(abs(scene.t_span[0]), abs(min(scene.t_span[1], float(found.motion.t[-1]))))
+    of_a_step = EPSILON * max(q, v * latest)
     for method in result.methods:
         for measure in (m for m in result.measures if m not in UNFIT):
             own = [
@@ -56,7 +58,14 @@ def mark_rounding(scene: Scene, found: Reference, result: Study) -> None:
             for k in (k for k in own if best <= k and best < own[-1]):
                 x = result.levels[k]
                 if x.errors.get("sup_position", math.inf) <= of_a_step * x.steps:
-                    result.levels[k] = replace(x, rounded=(*(m for m in x.rounded if m != measure), measure))
+                    result.levels[k] = replace(x, rounded=(*x.rounded, measure))
+
+
+def _sizes(scene: Scene, motion: Motion) -> tuple[float, float]:
+    """The largest coordinate and velocity of a motion, within the span."""
+    end = min(scene.t_span[1], float(motion.t[-1]))
+    q, v = (float(np.max(np.abs(x))) for x in motion.at(np.linspace(scene.t_span[0], end, LOOKS)))
+    return q, v
 
 
 def growth_of(scene: Scene, found: Reference, result: Study) -> Growth | None:
