@@ -80,9 +80,8 @@ def strike(s: Rubbing, t: float, plastic: bool) -> bool:
     copy_indices(s.tried, s.mode, s.n_c)
     found = strike_by_either(s, t, plastic)
     if not found and s.n_t > 0:
-        copy_indices(
-            s.mode, s.tried, s.n_c
-        )  # plastic ones have closed all that touch, and not only what is struck
+        # The plastic one has closed all that touch, and not only what is struck
+        copy_indices(s.mode, s.tried, s.n_c)
         s.problem.work.thorough = True
         found = strike_by_either(s, t, plastic)
         s.problem.work.thorough = False

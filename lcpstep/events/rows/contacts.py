@@ -37,6 +37,7 @@ class Contacts(Rows):
     mapped              whether what forces do is known for the rows held, see `contacts.held`
     problem             the complementarity problem at hand, of an impact or of forces
     q, v, a : (n_q,)    state at hand, and acceleration with constraints;  multiplier : (n_r,)   forces by row
+                        (impulses while a chattering is ended)
     dv, each : (n_q,), effect : (n_q + n_r,)   velocities on trial; accelerations by the forces, their signs left
                         aside; such an acceleration and its multipliers
     gap, velocity : (n_r,)   of rows at the state last measured;  curve : (n_c,)   gap accelerations
