@@ -52,9 +52,15 @@ def fault() -> Fault | None:
     return getattr(LOCAL, "fault", None)
 
 
-def forget() -> None:
-    """Leave out of account what callbacks have raised up to here."""
+def forget_all() -> None:
+    """Leave out of account all that callbacks have raised up to here."""
     LOCAL.fault = None
+
+
+def forget() -> None:
+    """The same, but for an interrupt of the keyboard, which the run has yet to hear."""
+    if not interrupted():
+        forget_all()
 
 
 def interrupted() -> bool:
@@ -68,6 +74,6 @@ def cause() -> BaseException | None:
     noted = fault()
     error = None if noted is None else noted.error
     if isinstance(error, KeyboardInterrupt):
-        forget()
+        forget_all()
         raise error
     return error

@@ -20,6 +20,7 @@ from lcpstep.faults import LOCAL, Fault, cause, interrupted, note
 
 P = ParamSpec("P")
 T = TypeVar("T")
+EXPECTED = False  # until there is a function that C calls: handlers take their time
 BETWEEN: set[CodeType] = set()  # of functions that C calls, and that call the user's
 
 
@@ -62,9 +63,11 @@ class Open(threading.local):
 OPEN = Open()
 
 
-def listen() -> None:
-    """C has called a function: from now on the run under way hears interrupts there."""
-    if OPEN.handler is None and OPEN.runs:
+def expect() -> None:
+    """A function that C calls has been made: from now on runs hear interrupts there, the one under way as well."""
+    global EXPECTED
+    EXPECTED = True
+    if OPEN.runs and OPEN.handler is None:
         _begin()
 
 
@@ -92,6 +95,8 @@ def hearing(run: Callable[P, T]) -> Callable[P, T]:
     def heard(*given: P.args, **named: P.kwargs) -> T:
         OPEN.runs += 1
         try:
+            if EXPECTED and OPEN.handler is None:
+                _begin()
             made = run(*given, **named)
             if interrupted():  # by what was called beside the motion
                 cause()

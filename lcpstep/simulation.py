@@ -14,7 +14,7 @@ from lagrangian import Contacts, HybridScene, Scene
 from lagrangian.relations import check_derivatives, is_large
 from lcpstep.depth import too_deep
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
-from lcpstep.faults import fault, forget
+from lcpstep.faults import fault, forget, forget_all
 from lcpstep.hearing import hearing
 from lcpstep.hops import too_short
 from lcpstep.outrun import outrun
@@ -125,7 +125,7 @@ def simulate(
     if error:
         _can_tell_errors(scene, method)
     kept, report = Kept.parse(keep, scene.t_span), progress or (lambda _: None)
-    forget()
+    forget_all()
     if isinstance(scene, HybridScene):
         if not hasattr(method, "run_hybrid"):
             raise refused("modes-method", scene)

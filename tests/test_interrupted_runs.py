@@ -207,7 +207,7 @@ def test_an_interrupt_between_c_and_a_function_in_python_is_heard(method):
         out[0] = math.cos(1.7 * t) - stiffness["k"] * q[0]
 
     contacts = LinearContacts(G=[[1.0], [-1.0]], offset=[0.3, 0.9], restitution=0.6)
-    scene = Scene(System(1, 1.0, force), 0.1, 0.0, (0.0, 1e5), contacts=contacts)
+    scene = Scene(System(1, 1.0, force), 0.1, 0.0, (0.0, 2e3), contacts=contacts)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UncompiledCallback)
         whole = simulate(replace(scene, t_span=(0.0, 50.0)), method)

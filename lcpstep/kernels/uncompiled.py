@@ -15,7 +15,7 @@ from lagrangian.checks import said
 from lagrangian.plain import python
 from lcpstep.faults import LOCAL, Callback, Fault, interrupted, name_of, note
 from lcpstep.functions import require
-from lcpstep.hearing import between, listen
+from lcpstep.hearing import between, expect
 
 C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 4, ctypes.POINTER(ctypes.c_ssize_t))
 ITEM, ALL_ONES = 8, 0xFF  # bytes of a number; of a not-a-number
@@ -26,6 +26,7 @@ class CalledBack:
 
     def __init__(self, f: Callback, first_order: bool = False) -> None:
         require(f)
+        expect()
         self.f, self.name, self.first_order = python(f), name_of(f), first_order
         self.function = C_FUNCTION(self.call)
         self.address = int(ctypes.cast(self.function, ctypes.c_void_p).value or 0)
@@ -33,7 +34,6 @@ class CalledBack:
     @between
     def call(self, t: float, q: int, v: int, p: int, out: int, sizes: Any) -> None:
         """The function on copies of the numbers that C points to: what it keeps of them outlives the run."""
-        listen()
         n_q, n_v, n_p, rows, columns = sizes[:5]
         if interrupted():  # a method that has passed over it is to meet no other number
             ctypes.memset(out, ALL_ONES, ITEM * rows * (columns or 1))
