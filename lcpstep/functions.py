@@ -88,7 +88,7 @@ def checksum(f: FunctionType) -> str:
 
 def _of_object(f: Any) -> str:
     """The checksum of an object that is called, or of a method: what it does, and the attributes that it reads."""
-    method = f if isinstance(f, MethodType) else getattr(f, "__call__", None)  # noqa: B004
+    method = f if isinstance(f, MethodType) else f.__call__
     if not isinstance(method, MethodType) or not isinstance(method.__func__, FunctionType):
         return ""
     own = method.__self__

@@ -21,6 +21,7 @@ from lagrangian import Scene, checks
 from lagrangian.labels import common_unit
 from lcpstep.accuracy import dials
 from lcpstep.accuracy.dials import changeable, dial, with_value
+from lcpstep.accuracy.question import curves_of
 from lcpstep.errors import LcpStepError, SimulationError
 from lcpstep.events import EventDriven
 from lcpstep.events.driven import LEAST_TOLERANCE
@@ -137,13 +138,12 @@ def contest(scene: Scene, methods: Sequence[Method], progress: Progress | None =
 
     Raises
     ------
-    ValueError   no methods
+    ValueError, TypeError   no methods, or what is none
     LcpStepError   no method treats the scene
     Everything that `lcpstep.simulate` raises about a run.
     """
     checks.instance("scene", scene, Scene)
-    if not methods:
-        raise ValueError("methods: expected at least one method")
+    curves_of(methods)  # which refuses what is no method, and none at all
     tell = progress or (lambda t: None)
     t = np.linspace(*scene.t_span, LOOKS)
     reasons = {k: _refused(scene, method) for k, method in enumerate(methods)}

@@ -77,9 +77,11 @@ def strike(s: Rubbing, t: float, plastic: bool) -> bool:
     impact is a plastic one. With friction there are some that are hard to find.
     """
     look_before(s)
+    if s.n_t == 0:
+        return strike_by_either(s, t, plastic)
     copy_indices(s.tried, s.mode, s.n_c)
     found = strike_by_either(s, t, plastic)
-    if not found and s.n_t > 0:
+    if not found:
         # The plastic one has closed all that touch, and not only what is struck
         copy_indices(s.mode, s.tried, s.n_c)
         s.problem.work.thorough = True
