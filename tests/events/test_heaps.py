@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lcpstep import Located, Status, simulate
+from lcpstep import EventDriven, Located, Status, simulate
 from tests.random_heaps import METHODS, energy, heap
 
 
@@ -31,3 +31,14 @@ def test_heaps_settle_by_every_method_alike(seed):
 def test_impulses_that_are_hard_to_find():
     """Contacts that hold each other at rest: every pivoting rule met a ray, in the heap of one step size."""
     assert simulate(heap(110), Located(1e-3)).status is Status.DONE
+
+
+@pytest.mark.parametrize("tolerance", [1e-9, 1e-11])
+def test_a_disc_that_rolls_up_a_wall_comes_back_to_the_floor(tolerance):
+    """With mu = 1 the force of the floor, sliding, goes through the disc's contact with the wall, and stops nothing.
+
+    Another disc presses it there. At 1e-11 what was left of a velocity, 1e-318, made contacts slip without end.
+    """
+    run = simulate(heap(316), EventDriven(tolerance, tolerance))
+    assert run.status is Status.DONE
+    np.testing.assert_allclose(run.q[-1], simulate(heap(316), Located(5e-4)).q[-1], rtol=0, atol=1e-6)

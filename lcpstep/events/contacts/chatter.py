@@ -37,7 +37,7 @@ from lcpstep.events.rows.contacts import (
     take_velocities,
 )
 from lcpstep.events.rows.equations import size_of
-from lcpstep.events.rows.held import constrain
+from lcpstep.events.rows.held import constrain, is_held
 from lcpstep.events.rows.keep import put_on_account
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.vectors import copy, product
@@ -165,12 +165,18 @@ def bring_to_rest(s: Rubbing, c: int) -> None:
 
 
 def slides_on(s: Rubbing, i: int, slip: float) -> bool:
-    """Whether what the modes hold can be stopped, and leaves row i its direction of sliding."""
+    """Whether what the modes hold can be stopped, and leaves row i its direction of sliding.
+
+    On the edge where it jams, its friction takes all that its normal force does: that stops nothing.
+    """
     if not hold_modes(s.rows):
         return False
     copy(s.dv, s.v, s.n_q)
     constrain(s.rows, s.dv, s.rate)
-    return (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip > 0.0
+    k = i - s.n_c
+    u = product(s.R, s.dv, k, s.n_q) + s.rate[k]
+    stopped = is_held(s.rows, k) or abs(u) <= s.rows.noise(k - s.n_j)
+    return stopped and (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip > 0.0
 
 
 def leaves_cone(s: Rubbing, c: int) -> bool:

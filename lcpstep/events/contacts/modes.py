@@ -39,7 +39,7 @@ from lcpstep.events.rows.problem import (
     solve_forces,
     stand_without_friction,
 )
-from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.clock import LEAST, NOISE
 from lcpstep.kernels.coulomb import motion_of
 from lcpstep.kernels.repose import is_loaded, moves, stay
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
@@ -47,8 +47,6 @@ from lcpstep.pointers import abs, max
 
 # Of accelerations that hang together: as much solving for the forces leaves of one that is none
 LEANING = 1e-12
-# Of numbers that have their digits in products, too: below it bodies at rest have no accelerations
-LEAST = 2.0**-960
 
 
 def decide(s: Rubbing) -> int:

@@ -8,6 +8,7 @@ from lcpstep.events.rows.equations import least_gap, list_gaps
 from lcpstep.events.rows.held import measure_missing, push_by_change, renew_held
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import factor_mass
+from lcpstep.kernels.clock import LEAST
 from lcpstep.kernels.dynamics import gaps
 from lcpstep.kernels.vectors import add, clear, largest
 from lcpstep.pointers import Doubles, abs, inf
@@ -56,9 +57,15 @@ def put_on_rows(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
 
 
 def push_onto_rows(s: Rows, v: Doubles) -> None:
-    """Put v onto the rows held, which are those of its state, by impulses that are left in `change`."""
+    """Put v onto the rows held, which are those of its state, by impulses that are left in `change`.
+
+    What remains of velocities that die away along them comes to rest while its rounding can be told from none.
+    """
     measure_missing(s, v, s.rate)
     push_by_change(s, v)
+    for j in range(s.n_q):
+        if abs(v[j]) < LEAST:
+            v[j] = 0.0
 
 
 def are_open(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
