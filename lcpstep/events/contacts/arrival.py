@@ -18,10 +18,11 @@ from lcpstep.events.codes import (
 from lcpstep.events.contacts.corners import land_on_corner
 from lcpstep.events.contacts.equations import measure, share_left
 from lcpstep.events.contacts.impact import forget_terms
-from lcpstep.events.contacts.leaning import gives, wavers
+from lcpstep.events.contacts.leaning import wavers
 from lcpstep.events.contacts.parting import part_before
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.contacts.surfaces import find_coming, find_touching, lift
+from lcpstep.events.rows.accelerations import accelerate_as_held
 from lcpstep.events.rows.contacts import gap_tolerance, sliding, still
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.kernels.vectors import product
@@ -125,18 +126,19 @@ def land_with(s: Rubbing) -> None:
 
 
 def stop_with(s: Rubbing, c: int) -> None:
-    """Contacts that stop with contact c are those whose sliding velocity goes with what the step has left of its own.
+    """Contacts that stop with contact c are those whose sliding velocity comes to zero when its own does.
 
     Feet of one body stop together, and the ends of a rod: a step is only as exact as its order, and what of one
     velocity it has left, it has of the others.
     """
     i = s.n_j + s.n_c + c
-    own = gives(s, i)
-    if not own > EDGE * s.W[i * s.n_r + i]:
+    accelerate_as_held(s.rows)
+    own = product(s.R, s.a, i, s.n_q) + s.bias[i]
+    if own == 0.0:
         return
     for d in range(s.n_c):
         k = s.n_j + s.n_c + d
-        with_it = s.velocity[i] * product(s.R, s.dv, k, s.n_q) / own
+        with_it = s.velocity[i] * (product(s.R, s.a, k, s.n_q) + s.bias[k]) / own
         if abs(s.velocity[k] - with_it) <= still(s.rows, k) + EDGE * abs(with_it):
             s.free[d] = 1
 
