@@ -9,7 +9,7 @@ from tests.random_heaps import METHODS, energy, heap
 
 @pytest.mark.parametrize(
     "seed",
-    [17, 110, 187, 225, *(pytest.param(k, marks=pytest.mark.slow) for k in (0, 2, 7, 26, 45, 52, 134))],
+    [17, 110, 187, 225, *(pytest.param(k, marks=pytest.mark.slow) for k in (0, 2, 7, 26, 45, 52, 134, 381))],
 )
 def test_heaps_settle_by_every_method_alike(seed):
     """What went wrong, by heap.
@@ -19,7 +19,8 @@ def test_heaps_settle_by_every_method_alike(seed):
     unpressed, had what sticks decided by forces to come. 110, 225: accelerations that are rounding beside others
     left no forces. 134: a disc in a corner, whose two contacts stop together, stopped at one alone: with mu = 1 an
     impulse there moves nothing, and did not tell that the other goes with it. 187: a contact whose load had gone
-    opened by rounding, and was missed by the next impact.
+    opened by rounding, and was missed by the next impact. 381: what rounding leaves of an impact was taken for speeds
+    of other contacts, which are known better, until no impulses ended them.
     Heap 45 is compared before 0.6 s, for rounding makes 1e-2 of itself later: hops that meet are struck together.
     """
     true = simulate(heap(seed), METHODS[0])

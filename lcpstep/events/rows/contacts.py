@@ -112,10 +112,16 @@ class Contacts(Rows):
         return SLIDES if slides else STICKS
 
     def push(self, i: int, p: float) -> None:
-        """Apply the impulse p on row i, and count it; what is taken from velocities again leaves rounding."""
+        """Apply the impulse p on row i, and count it.
+
+        What is taken from velocities again leaves rounding, and p is known as well as the velocity that asked for it.
+        """
+        known, own = NOISE * abs(p), self.D[i * self.n_r + i]
+        if p != 0.0 and own > 0.0:
+            known = max(known, NOISE * size_of(self, i, self.rate[i], self.v) / own)
         add(self.v, p, after(self.MR, i * self.n_q), self.n_q)
         for k in range(self.n_c + self.n_t):
-            self.terms[k] = max(self.terms[k], NOISE * abs(self.D[(self.n_j + k) * self.n_r + i] * p))
+            self.terms[k] = max(self.terms[k], abs(self.D[(self.n_j + k) * self.n_r + i]) * known)
         add_impulse(self, i, p)
 
     def stop(self) -> None:
