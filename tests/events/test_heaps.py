@@ -1,9 +1,11 @@
 """Heaps of discs with friction that fall together between two walls: by all methods alike, and no energy gained."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from lcpstep import EventDriven, Located, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
 from tests.random_heaps import METHODS, energy, heap
 
 
@@ -46,3 +48,19 @@ def test_a_disc_that_rolls_up_a_wall_comes_back_to_the_floor(tolerance):
     run = simulate(heap(316), EventDriven(tolerance, tolerance))
     assert run.status is Status.DONE
     np.testing.assert_allclose(run.q[-1], simulate(heap(316), Located(5e-4)).q[-1], rtol=0, atol=1e-6)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [449, 451])
+def test_heaps_that_jam_go_on_as_by_moreaus_steps_from_just_before(seed):
+    """No forces answer what slides in them, as an enumeration of all modes says, nor would one contact alone jam."""
+    asked = EventDriven(1e-10, 1e-10, jamming="impact")
+    assert simulate(heap(seed), EventDriven(1e-10, 1e-10)).status is Status.PAINLEVE_INCONSISTENT
+    run = simulate(heap(seed), asked)
+    assert run.status is Status.DONE
+    assert np.max(np.diff(energy(run))) < 1e-6
+    t = run.impacts.time[run.impacts.kind == Kind.JAM][0]
+    q, v = run.at(t - 1e-6)[:2]
+    near = replace(heap(seed), q0=q, v0=v, t_span=(t - 1e-6, t + 1e-4))
+    ends = [simulate(near, method, keep=[t + 1e-4]).q[-1] for method in (asked, Moreau(1e-5), Moreau(1e-6))]
+    assert np.max(np.abs(ends[2] - ends[0])) < 0.5 * np.max(np.abs(ends[1] - ends[0])) + 1e-10

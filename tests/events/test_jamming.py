@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, scenes
+from lagrangian import Contacts, Coulomb, LinearContacts, LinearSystem, Scene, scenes
 from lagrangian.scenes.rough_contacts import critical_friction
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, energy, simulate
 
@@ -99,6 +99,52 @@ def test_belts_that_press_a_mass_onto_each_other_leave_it_no_forces_from_one_on(
     else:
         assert run.status == Status.PAINLEVE_INCONSISTENT
         assert "no forces of the closed contacts [0, 1] together" in run.message
+
+
+def gaps_of_ends(t, q, v, p, out):
+    out[0], out[1] = q[1] - np.sin(q[2]), q[0] - np.cos(q[2])
+
+
+def normals_of_ends(t, q, v, p, out):
+    out[:] = 0.0
+    out[0, 1], out[0, 2], out[1, 0], out[1, 2] = 1.0, -np.cos(q[2]), 1.0, np.sin(q[2])
+
+
+def tangents_of_ends(t, q, v, p, out):
+    out[:] = 0.0
+    out[0, 0], out[0, 2], out[1, 1], out[1, 2] = 1.0, -np.sin(q[2]), 1.0, np.cos(q[2])
+
+
+def ladder(angle, mu, rate):
+    """A ladder of 2 m and 1 kg on a floor and against a wall, both rough, that is being pushed up the wall."""
+    c, s = np.cos(angle), np.sin(angle)
+    return Scene(
+        system=LinearSystem(np.diag([1.0, 1.0, 1.0 / 3.0]), force=[0.0, -9.81, 0.0]),
+        contacts=Contacts(2, gaps_of_ends, normals_of_ends, friction=Coulomb(mu, tangents_of_ends)),
+        q0=[c, s, angle], v0=[-s * rate, c * rate, rate], t_span=(0.0, 0.05),
+    )  # fmt: skip
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(0.8, 1.3), st.floats(1.1, 2.5), st.floats(0.3, 3.0))
+def test_a_ladder_whose_ends_have_no_forces_together_stops_at_once(angle, mu, rate):
+    """Its motion has one degree of freedom while both ends are closed: what ends their sliding ends all of it."""
+    scene = ladder(angle, mu, rate)
+    run = simulate(scene, ASKED)
+    if simulate(scene, EventDriven()).status == Status.PAINLEVE_INCONSISTENT:
+        jam = run.impacts[run.impacts.kind == Kind.JAM]
+        assert run.status == Status.DONE
+        assert len(set(jam.time)) == 1
+        start = scene.v0 if jam.time[0] == 0.0 else run.at(jam.time[0] * (1.0 - 1e-9))[1]
+        D, at = np.zeros((2, 3)), run.at(jam.time[0])[0]
+        normals_of_ends(0.0, at, None, None, D)
+        T = np.zeros((2, 3))
+        tangents_of_ends(0.0, at, None, None, T)
+        assert np.max(np.abs(np.vstack([D, T]) @ start)) > 1e-3
+        assert np.max(np.abs(run.at(jam.time[0] + 1e-9)[1])) < 1e-7
+        assert np.max(np.diff(energy(run).total)) < 1e-9
+        coarse, fine = (simulate(scene, Moreau(h), keep=[0.05]).q[-1] for h in (1e-3, 1e-5))
+        assert np.max(np.abs(fine - run.q[-1])) < 0.1 * np.max(np.abs(coarse - run.q[-1])) + 1e-6
 
 
 def close_in(t, q, v, p, out):

@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.codes import ACCUMULATION, IMPACT, JAM, JUMP, LEANS, NO_IMPULSES, OPEN, SLIDES, STICKS
-from lcpstep.events.contacts.equations import measure, renew_friction
+from lcpstep.events.codes import ACCUMULATION, IMPACT, JAM, LEANS, NO_IMPULSES, OPEN, SLIDES, STICKS
+from lcpstep.events.contacts.equations import renew_friction
 from lcpstep.events.contacts.parting import approaches, let_go, pass_by, rejoin
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import GONE
@@ -24,7 +24,7 @@ from lcpstep.events.rows.problem import fill, list_unknowns, row_of
 from lcpstep.kernels.coulomb import solve_contacts
 from lcpstep.kernels.energetic import strike_in_turn
 from lcpstep.kernels.recurrence import FOR_EVER, looks_back
-from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, TOO_MANY_EVENTS
+from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, TOO_MANY_EVENTS
 from lcpstep.kernels.vectors import clear, copy_indices
 from lcpstep.pointers import abs, after, inf, max, min
 
@@ -175,6 +175,7 @@ def pose(s: Rubbing) -> tuple[int, int]:
 def strike_with(s: Rubbing, t: float, n_a: int, n_f: int, jammed: int, plastic: bool) -> None:
     """Apply the impulses found, and close or open the contacts by the velocities that they leave.
 
+    jammed : the contact that has, -1 where none has, n_c where several together have
     A plastic one stands for impacts without end, and is told as such where the law of a contact is another.
     """
     for a in range(n_a + n_f):
@@ -189,7 +190,7 @@ def strike_with(s: Rubbing, t: float, n_a: int, n_f: int, jammed: int, plastic: 
             if jammed < 0 and not (plastic or s.in_turn):
                 u = 0.0 - s.model.restitution[c] * min(s.before[c], 0.0)  # by the law
             kind = ACCUMULATION if plastic and s.model.restitution[c] > 0.0 else IMPACT
-            kind = JAM if c == jammed else kind
+            kind = JAM if c == jammed or jammed == s.n_c else kind
             s.clock.log(t, c, kind, s.before[c], u, s.problem.impulse[a])
             s.rows.since[c], s.rows.struck[c], s.carried[c] = t - s.rows.struck[c], t, 0
         s.mode[c], s.jumped[c] = OPEN if u > s.terms[c] else SLIDES, 0.0
@@ -219,39 +220,6 @@ def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
 def taken_along(s: Rubbing, c: int) -> bool:
     """Whether contact c, which was closed, strikes as the velocity of its obstacle jumps: u- = 0."""
     return s.jumped[c] != 0.0 and s.before[c] == 0.0
-
-
-def jam(s: Rubbing, t: float) -> int:
-    """The impact without collision of the contact that jams (`culprit`), at the base state; a status.
-
-    Its force grows beyond all bounds while it slides: an impulse that presses it together until the sliding ends, and
-    what follows of the impact. By the laws that do not integrate it the normal has no restitution, as u- = 0.
-    """
-    if not measure(s, t, s.y):
-        return NOT_FINITE
-    if s.clock.record.full(4 * s.n_c + 4):
-        return BUFFER_FULL
-    hit, first = s.rows.culprit, -1
-    clear(s.instant, s.n_r)
-    for c in range(s.n_c):
-        s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
-        s.free[c], s.touches[c] = 1, 1 if s.mode[c] != OPEN else 0
-    n_a, n_f = pose(s)
-    for a in range(n_a):
-        s.problem.rate[a] = 0.0
-        s.problem.slow[a] = 0.0 if s.in_turn else inf
-        if s.problem.ids[a] == hit:
-            first = a
-    for f in range(n_f):
-        s.problem.rate[n_a + f] = s.velocity[s.n_j + s.n_c + s.problem.ids[s.problem.carrier[f]]]
-    done = first >= 0 and strike_in_turn(s.problem, s.model.restitution, n_a, n_f, first)
-    if not (done and s.problem.impulse[first] > 0.0):
-        return PAINLEVE_INCONSISTENT
-    s.jams += 1
-    strike_with(s, t, n_a, n_f, hit, False)
-    clear(s.problem.slow, s.n_c)
-    s.rows.next = JUMP
-    return DONE
 
 
 def find_free(s: Rubbing) -> None:

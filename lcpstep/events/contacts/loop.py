@@ -30,7 +30,8 @@ from lcpstep.events.contacts.chatter import close_small
 from lcpstep.events.contacts.corners import turn_corner
 from lcpstep.events.contacts.equations import let_stick, measure
 from lcpstep.events.contacts.guards import begin_guards
-from lcpstep.events.contacts.impact import forget_terms, jam, jump
+from lcpstep.events.contacts.impact import forget_terms, jump
+from lcpstep.events.contacts.jamming import jam
 from lcpstep.events.contacts.loose import find_loose
 from lcpstep.events.contacts.modes import adopt_modes, decide, obey, undecided
 from lcpstep.events.contacts.state import Rubbing
@@ -96,10 +97,10 @@ def occur(s: Rubbing) -> int:
 
 
 def yielding(s: Rubbing, code: int) -> int:
-    """The same status, but for a contact that jams where that ends in an impact; nothing jams without friction."""
+    """The same status, but for contacts that jam where that ends in an impact; nothing jams without friction."""
     if code == PAINLEVE_INCONSISTENT and s.n_t == 0:
         return NO_FORCES
-    if code == PAINLEVE_INCONSISTENT and s.yields and s.rows.culprit >= 0:
+    if code == PAINLEVE_INCONSISTENT and s.yields:
         return jam(s, s.clock.t0)
     return code
 
