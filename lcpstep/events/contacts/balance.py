@@ -37,9 +37,14 @@ def changes_any(s: Rubbing) -> bool:
     """Whether a contact that a force presses, or holds at rest, in the modes at hand no longer does by `decide`."""
     some = False
     for c in range(s.n_c):
-        opens, slips = s.new_mode[c] == OPEN, s.mode[c] == STICKS and s.new_mode[c] != STICKS
-        some = some or (s.mode[c] != OPEN and s.loaded[c] == 1 and (opens or slips))
+        some = some or lets_go(s, c)
     return some
+
+
+def lets_go(s: Rubbing, c: int) -> bool:
+    """Whether contact c is one of these."""
+    opens, slips = s.new_mode[c] == OPEN, s.mode[c] == STICKS and s.new_mode[c] != STICKS
+    return s.mode[c] != OPEN and s.loaded[c] == 1 and (opens or slips)
 
 
 def reconsider(s: Rubbing, t: float, longest: float) -> int:

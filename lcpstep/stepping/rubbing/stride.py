@@ -6,6 +6,7 @@ import cython
 
 from lcpstep.events.codes import OPEN
 from lcpstep.events.contacts.arrival import arrive, find_standing, of_force, tells
+from lcpstep.events.contacts.balance import lets_go
 from lcpstep.events.contacts.equations import measure, measure_gaps
 from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.loose import first_stray
@@ -14,6 +15,7 @@ from lcpstep.events.contacts.moments import of_sliding
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.contacts.step import mark_resting
 from lcpstep.events.contacts.surfaces import FREE
+from lcpstep.events.rows.chatter import moves
 from lcpstep.events.rows.contacts import add_impulse, hold_modes, list_by_row, still
 from lcpstep.events.rows.equations import respond_to
 from lcpstep.events.rows.jumps import breaks
@@ -158,6 +160,8 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
             return failed(s)
         find_standing(s)
         code = decide(s)
+        if ahead > LOOK_AHEAD * h:
+            leave_to_guards(s, c)
         waits = code == DONE and undecided(s)
         # Another mode, or its load left to others that hold it too
         changes = (s.new_mode[c] != s.mode[c] and tells(s)) or s.new_loaded[c] != s.loaded[c]
@@ -167,6 +171,16 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
         ahead *= FURTHER
     s.decided = t0 + tau + ahead
     return code
+
+
+def leave_to_guards(s: Strides, c: int) -> None:
+    """Keep the modes of pressed contacts that forces of contact c do not move, and that open or slip further ahead.
+
+    They do so later than contact c, as their own guards will say.
+    """
+    for d in range(s.n_c):
+        if d != c and lets_go(s, d) and not moves(s.rows, c, d):
+            s.new_mode[d], s.new_direction[d], s.new_loaded[d] = s.mode[d], s.direction[d], s.loaded[d]
 
 
 def take_over(s: Strides, t: float, tau: float) -> None:
