@@ -15,7 +15,7 @@ from lcpstep.lcp.elimination import back_substitute, factorise
 from lcpstep.lcp.judge import judge, share
 from lcpstep.lcp.status import FAILED, MAX_ITERATIONS, SOLVED
 from lcpstep.lcp.workspace import Workspace
-from lcpstep.pointers import Doubles, abs, max
+from lcpstep.pointers import Doubles, abs, inf, max
 from lcpstep.rows import copy
 
 REFINEMENTS = 3
@@ -61,7 +61,7 @@ def solve_chosen(W: Doubles, b: Doubles, z: Doubles, n: int, tolerance: float, w
     w, change = work.slack, work.left
     for i in range(n):
         z[i], w[i] = 0.0, b[i]
-    error = 1.0
+    error = inf  # a first answer is refined even where a row of it is rounding alone, of relative error 1
     for _ in range(1 + REFINEMENTS):
         for p in range(k):
             i = work.order[p]

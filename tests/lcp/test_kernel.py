@@ -49,6 +49,22 @@ def test_not_a_number_is_not_solved():
         assert solve(np.eye(n), b * np.nan, np.zeros(n), Workspace(n)) != Status.SOLVED
 
 
+def test_rows_of_small_numbers_alone_have_their_answers_refined():
+    """A point slides as another lands, and 1e-16 acts between them: of a first answer one row is rounding alone."""
+    W, b = np.zeros((6, 6)), np.array([0.0, -4.6, -5.7, 1.2, 0.0, 0.0])
+    mu = np.array([0.04, 0.76])
+    W[:4, :4] = np.diag([1.2, 1.1, 1.2, 1.1])
+    W[0, 3] = W[3, 0] = 1e-16
+    W[1, 2] = W[2, 1] = -2e-16
+    W[0, 2] = W[2, 0] = 1e-16
+    W[2, 3] = W[3, 2] = -2e-16
+    W[:4, :2] -= W[:4, 2:4] * mu
+    W[2:4, 4:], W[4:, :2], W[4:, 2:4] = np.eye(2), np.diag(2.0 * mu), -np.eye(2)
+    z = np.zeros(6)
+    assert solve(W, b, z, Workspace(6)) == Status.SOLVED
+    assert residual(W, b, z) <= 1e-13
+
+
 def problems():
     """Random ones of every kind: definite, dependent, indefinite, with ties, without an answer."""
     rng = np.random.default_rng(1)

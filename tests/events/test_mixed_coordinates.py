@@ -1,0 +1,35 @@
+"""Coordinates that mix bodies which do not touch: what acts between these is rounding, and decides nothing."""
+
+import numpy as np
+import pytest
+
+from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene
+from lcpstep import EventDriven, Located, Status, simulate
+from tests.random_slopes import draw
+
+TURNS = 12
+
+
+def turned(scene, seed):
+    """The scene in other coordinates, and the matrix that brings these back."""
+    Q, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(scene.n_q, scene.n_q)))
+    c, M = scene.contacts, Q.T @ scene.system.M @ Q
+    rubbing = Coulomb(c.friction.mu, c.friction.tangent @ Q, mu_s=c.friction.mu_s)
+    return Scene(
+        LinearSystem(0.5 * (M + M.T), force=Q.T @ scene.system.force.constant), Q.T @ scene.q0, Q.T @ scene.v0,
+        scene.t_span, LinearContacts(c.G @ Q, c.offset, c.restitution, friction=rubbing),
+    ), Q  # fmt: skip
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(0.01), Located(0.01, order=4)], ids=str)
+@pytest.mark.parametrize("seed", [25, 43, 85])
+def test_a_body_that_slides_leaves_the_landing_of_another_alone(seed, method):
+    """Two or three slide at rest on their slopes as others land: no impulses were found in a third of all turns."""
+    scene = draw(seed)
+    end = scene.t_span[1]
+    straight = simulate(scene, method, keep=[end])
+    for k in range(TURNS):
+        other, Q = turned(scene, k)
+        run = simulate(other, method, keep=[end])
+        assert run.status is Status.DONE, run.message
+        np.testing.assert_allclose(Q @ run.q[-1], straight.q[-1], rtol=0.0, atol=1e-8)
