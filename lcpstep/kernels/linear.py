@@ -13,6 +13,9 @@ import cython
 from lcpstep.pointers import Doubles, Indices, abs
 
 DEPENDENT = 2.0**-50  # relative rounding: what a row must have more of that the rows before it have not
+APART = (
+    2.0**-92
+)  # of the product of two rows' own mobilities: the square of one between them that is rounding
 
 
 def factorise(A: Doubles, pivots: Indices, n: int) -> bool:
@@ -118,3 +121,16 @@ def grow_factor(D: Doubles, n_D: int, L: Doubles, n_L: int, rows: Indices, doubt
     L[k * n_L + k] = sqrt(pivot)
     doubt[k] = 0.5 * size_of_pivot / pivot
     return True
+
+
+def uncouple(W: Doubles, first: int, last: int, n: int) -> None:
+    """Take what rows of the mobilities W (n numbers a row) do to each other for nothing where it is rounding.
+
+    In coordinates that mix bodies apart from each other the sums of which W is made cancel but for that. It would tie
+    a contact at rest to every blow elsewhere, and be all that a complementarity problem has in its row.
+    """
+    for i in range(first, last):
+        for k in range(first, last):
+            both = W[i * n + k]
+            if both * both < APART * W[i * n + i] * W[k * n + k]:
+                W[i * n + k] = 0.0

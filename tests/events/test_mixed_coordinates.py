@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene
-from lcpstep import EventDriven, Located, Status, simulate
+from lcpstep import EventDriven, Located, Moreau, Status, simulate
 from tests.random_slopes import draw
 
 TURNS = 12
@@ -33,3 +33,13 @@ def test_a_body_that_slides_leaves_the_landing_of_another_alone(seed, method):
         run = simulate(other, method, keep=[end])
         assert run.status is Status.DONE, run.message
         np.testing.assert_allclose(Q @ run.q[-1], straight.q[-1], rtol=0.0, atol=1e-8)
+
+
+def test_a_body_that_sticks_is_not_let_go_by_the_landing_of_another():
+    """Friction of a blow is that of sliding, less than what holds: it let go of the first point for good."""
+    scene, method = draw(44), Moreau(0.01)
+    straight = simulate(scene, method)
+    for k in range(TURNS):
+        other, Q = turned(scene, k)
+        run = simulate(other, method)
+        np.testing.assert_allclose(run.q @ Q.T, straight.q, rtol=0.0, atol=1e-8)

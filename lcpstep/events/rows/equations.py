@@ -13,6 +13,7 @@ import cython
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import divide_by_mass, response
 from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
+from lcpstep.kernels.linear import uncouple
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import copy, filled, product_at
 from lcpstep.pointers import Doubles, abs, after, min
@@ -99,6 +100,7 @@ def respond(s: Rows) -> None:
         respond_to(s, i)
         for j in range(i + 1):
             couple(s, i, j)
+    uncouple(s.D, 0, s.n_r, s.n_r)
 
 
 def respond_held(s: Rows) -> None:

@@ -16,6 +16,7 @@ import cython
 from lcpstep.events.rows.equations import other
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import response
+from lcpstep.kernels.linear import uncouple
 from lcpstep.kernels.vectors import add, clear, copy, product
 from lcpstep.pointers import Doubles, abs, after
 
@@ -35,6 +36,7 @@ def leave_joints(s: Rows) -> None:
         put_on_joints(s, i)
         for k in range(s.n_j, i + 1):
             couple_on_joints(s, i, k)
+    uncouple(s.D_on, s.n_j, s.n_r, s.n_r)
 
 
 def leave_joints_again(s: Rows, count: int) -> None:

@@ -15,10 +15,8 @@ from lcpstep.events.rows.loads import unload
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import solve_contacts
 from lcpstep.kernels.vectors import clear, largest
-from lcpstep.pointers import Indices, abs
+from lcpstep.pointers import Indices, abs, after
 
-# Of the product of two rows' own mobilities: the square of one between them that is rounding
-APART = 2.0**-92
 SMALL = 1e-12  # of the largest acceleration: as much as differences of callbacks leave of one that is none
 
 
@@ -50,25 +48,17 @@ def fill(s: Contacts, n_a: int, n_f: int) -> None:
         c = s.problem.ids[b]
         if s.free[c] == 0 and rubs(s, c):
             for a in range(m):
-                W[a * m + b] -= s.direction[c] * s.mu[c] * coupling(s, row_of(s, a, n_a), s.n_j + s.n_c + c)
+                k = row_of(s, a, n_a) * s.n_r + row_of(s, b, n_a) + s.n_c
+                W[a * m + b] -= s.direction[c] * s.mu[c] * s.D_on[k]
 
 
 def fill_without_sliding(s: Contacts, n_a: int, n_f: int) -> None:
     """The same without the friction of what slides."""
     m = n_a + n_f
     for a in range(m):
+        row = after(s.D_on, row_of(s, a, n_a) * s.n_r)
         for b in range(m):
-            s.problem.mobility[a * m + b] = coupling(s, row_of(s, a, n_a), row_of(s, b, n_a))
-
-
-def coupling(s: Contacts, i: int, j: int) -> float:
-    """What an impulse on row i gives to row j on the joints; none where it is rounding beside what each gives itself.
-
-    In coordinates that mix bodies apart from each other sums cancel but for that. Where one body slides at rest on
-    its floor, u- = 0, the landing of the other would have to be answered by impulses of which no digit is known.
-    """
-    both = s.D_on[i * s.n_r + j]
-    return both if both * both > APART * s.D_on[i * s.n_r + i] * s.D_on[j * s.n_r + j] else 0.0
+            s.problem.mobility[a * m + b] = row[row_of(s, b, n_a)]
 
 
 def stand_without_friction(s: Contacts, n_a: int) -> bool:

@@ -16,7 +16,7 @@ import cython
 
 from lcpstep.kernels.acceleration import factor_mass, response
 from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, total_force
-from lcpstep.kernels.linear import grow_factor, invert_matrix, solve_factored
+from lcpstep.kernels.linear import grow_factor, invert_matrix, solve_factored, uncouple
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, copy, filled, product, product_at, product_between
 from lcpstep.pointers import Doubles, abs, after, max, min
@@ -115,6 +115,7 @@ def respond(m: Model, w: Work) -> None:
         n_k = filled(after(w.MG, c * w.n_q), w.n_q, w.moved)
         for d in range(w.n_c):
             w.W[d * w.n_c + c] = product_at(w.G, after(w.MG, c * w.n_q), d, w.n_q, w.moved, n_k)
+    uncouple(w.W, 0, w.n_c, w.n_c)
 
 
 def refactor(m: Model, w: Work, t: float) -> bool:
