@@ -124,7 +124,7 @@ def in_units(d: Description, length: float, time: float, mass: float) -> Descrip
         "b": 1.0 / length,
     }  # fmt: skip
     rows = {name: numbers(unit * np.array(x)) for name, unit in units.items() if (x := getattr(d, name))}
-    bend = [x if r > 0.0 else x / length for x, r in zip(d.bend, d.round, strict=True)]
+    bend = [x if r > 0.0 else x / length for x, r in zip(d.bend, d.row("round", len(d.bend)), strict=True)]
     return replace(
         d, **rows, h=time * d.h, omega=d.omega / time, force_omega=d.force_omega / time, bend=numbers(bend),
         joint_bend=numbers(np.array(d.joint_bend) / length), spread=mass * length**2 * d.spread,

@@ -59,6 +59,7 @@ class State:
     q, v, force      (n_q,) force: F(t), of a general system f(t, q, v)
     g, u, closed     (n_c,) gaps and their velocities; 0 open, 1 struck in the last step, 2 closed for several steps
     sticks           (n_c,) 1 for contacts that the last step kept from sliding
+    far              (n_c,) size of the largest terms of closed gaps since these closed
     impulse          (n,) of all rows since the last kept state
     n_moving         how many numbers q, v, force, g, u and impulse are, in one piece in this order
     next_q, next_v, next_force, v_free    at the end of the step; the velocity without contact
@@ -90,7 +91,7 @@ class State:
         self.active = self.steps = self.problems = self.forces = self.iteration = 0
         self.moved = self.opened = 0.0
         self.record: Any = None
-        self.work = np.zeros((VECTORS + SQUARES * n_q) * n_q)
+        self.work = np.zeros((VECTORS + SQUARES * n_q) * n_q + n_c)
         self.next_force = doubles(self.work)
         self.next_q = after(self.next_force, n_q)
         self.next_v = after(self.next_q, n_q)
@@ -105,6 +106,7 @@ class State:
         self.M_start = after(self.M, n_q * n_q)
         self.A = after(self.M_start, n_q * n_q)
         self.J = after(self.A, n_q * n_q)
+        self.far = after(self.J, n_q * n_q)
 
 
 class Blows:

@@ -29,8 +29,8 @@ import cython
 from lcpstep.kernels.dynamics import external_force, gap_rates, gaps
 from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import add, clear, copy, finite, product
-from lcpstep.pointers import abs, after, whole
+from lcpstep.kernels.vectors import add, clear, copy, finite, product, size_of_product
+from lcpstep.pointers import abs, after, max, whole
 from lcpstep.stepping.constraints.joint_rows import joints_hold
 from lcpstep.stepping.steps import RESOLUTION, RESTING, UNTOLD
 from lcpstep.stepping.theta_method.blows import one_after_another, separates
@@ -75,6 +75,8 @@ def predict_active(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
     """Contacts with g + (h/2) u <= 0, up to rounding, are active: first of the rows that take part."""
     n_a = 0
     for i in range(c.n_c):
+        far = size_of_product(m.G if m.flat else c.H, s.q, i, s.n_q) if s.closed[i] > 0 else 0.0
+        s.far[i] = max(s.far[i], far) if s.closed[i] > 0 else 0.0
         gap = s.g[i] + 0.5 * plan.h * s.u[i]
         held = s.opened if s.closed[i] > 1 else 0.0
         if gap <= plan.slack + held or (s.closed[i] > 0 and gap <= plan.slack + drifted(m, plan, s, c, i, t)):
@@ -84,7 +86,7 @@ def predict_active(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
 
 
 def drifted(m: Model, plan: Plan, s: State, c: Rows, i: int, t: float) -> float:
-    """How far rounding may have opened a closed gap: each step rounds the coordinates, which may have gone far.
+    """How far rounding may have opened a closed gap: each step rounds the coordinates, which may have been far away.
 
     It rounds velocities too, to what the impulses of the last step, which cancel, have each made of them; and times,
     so that an obstacle has moved for a little longer or shorter than the body on it.
@@ -95,8 +97,8 @@ def drifted(m: Model, plan: Plan, s: State, c: Rows, i: int, t: float) -> float:
         for k in range(c.n_c):
             if c.p[k] > 0.0:
                 pushed += abs(plan.X[k * n + j]) * c.p[k]
-        size += abs(G[i * n + j]) * (abs(s.q[j]) + plan.h * pushed)
-    return (RESTING + RESOLUTION * s.steps) * size + UNTOLD * abs(t * c.H_t[i])
+        size += abs(G[i * n + j]) * plan.h * pushed
+    return (RESTING + RESOLUTION * s.steps) * (s.far[i] + size) + UNTOLD * abs(t * c.H_t[i])
 
 
 def closes_again(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> bool:
