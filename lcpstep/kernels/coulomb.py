@@ -50,8 +50,8 @@ class ContactProblem:
     warm     the impulses of the last problem are a guess for the next; without one, a problem with several solutions
              has the same whatever came before
     W, b, z  of the problem with friction;  fast : (n_c,)  sliding velocities that another problem has slower
-    slow, sum    (n_c,) and (m,) of impacts in turn, see `energetic`: speeds below which contacts have no restitution;
-                 impulses of those before
+    slow, made, sum    of impacts in turn, see `energetic`: speeds below which contacts have no restitution, and what
+                 forces have made of their approaches, (n_c,) each; impulses of those before (m,)
 
     Parameters
     ----------
@@ -69,13 +69,14 @@ class ContactProblem:
         }
         self.mobility, self.rate = doubles(self.arrays["mobility"]), doubles(self.arrays["rate"])
         self.impulse, self.mu = doubles(self.arrays["impulse"]), doubles(mu)
-        self.space = np.zeros(unknowns * unknowns + 2 * unknowns + 4 * n_c)
+        self.space = np.zeros(unknowns * unknowns + 2 * unknowns + 5 * n_c)
         self.W = doubles(self.space)
         self.b = after(self.W, unknowns * unknowns)
         self.z = after(self.b, unknowns)
         self.slow = after(self.z, unknowns)
         self.fast = after(self.slow, n_c)
-        self.sum = after(self.fast, n_c)
+        self.made = after(self.fast, n_c)
+        self.sum = after(self.made, n_c)
         self.lists = np.zeros(n, dtype=np.intp), np.zeros(n_c, dtype=np.intp)
         self.ids, self.carrier = indices(self.lists[0]), indices(self.lists[1])
         largest = unknowns if unknowns > n_c else n_c

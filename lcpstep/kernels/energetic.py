@@ -34,7 +34,7 @@ LIKE = 1e-9  # relative: contacts that approach equally fast strike in the order
 def strike_in_turn(c: ContactProblem, restitution: Doubles, n_a: int, n_f: int, jams: int) -> bool:
     """Impulses of n_a contacts, n_f of them with tangents, into c.impulse, from their velocities in c.rate.
 
-    restitution : (n_c,), of energy; contacts slower than c.slow have none
+    restitution : (n_c,), of energy; none below c.slow, nor of what forces have made of an approach
     jams : the unknown that strikes first, though it does not approach: impact without collision; or -1
     """
     m = n_a + n_f
@@ -49,8 +49,12 @@ def strike_in_turn(c: ContactProblem, restitution: Doubles, n_a: int, n_f: int, 
             next_one = fastest_of(u, n_a, LEFT * fastest)
         if next_one < 0:
             break
-        i = c.ids[next_one]
-        e = restitution[i] if -u[next_one] >= c.slow[next_one] else 0.0
+        e = 0.0
+        if -u[next_one] >= c.slow[next_one]:
+            e = restitution[c.ids[next_one]]
+            if c.made[next_one] > 0.0:
+                e *= max(0.0, 1.0 + c.made[next_one] / u[next_one])
+        c.made[next_one] = 0.0  # by this impact
         if not strike_one(c, next_one, n_a, n_f, e, jams >= 0):
             return False
         if jams >= 0:

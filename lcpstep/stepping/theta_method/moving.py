@@ -154,7 +154,6 @@ class Rows:
     p : (n,)               impulses
     sliding : (n_t,)       sliding velocities at the start of the step;  at_rest : the same, 0 of what sticks
     tangent_restitution : (n_c,);  in_turn    see `kernels.energetic`
-    rebound : (n_c,)       restitution of such an impact, of the velocity with the forces of the step in it
     failed : (n_j,)        1 for joints that contradict others
     problem                of the contacts, with `ids`, the rows that take part
     elimination            of the joints
@@ -195,7 +194,7 @@ class Rows:
         self.arrays = {"p": np.zeros(n), "failed": np.zeros(n_j, dtype=np.intp), "r_T": tangent_restitution}
         self.tangent_restitution = doubles(tangent_restitution)
         self.p, self.failed = doubles(self.arrays["p"]), indices(self.arrays["failed"])
-        self.numbers = np.zeros((n + 2 * n_j) * n_q + n + 2 * n_t + n_c)
+        self.numbers = np.zeros((n + 2 * n_j) * n_q + n + 2 * n_t)
         self.H = doubles(self.numbers)
         self.T, self.J = after(self.H, n_c * n_q), after(self.H, (n_c + n_t) * n_q)
         self.J_start = after(self.H, n * n_q)
@@ -203,7 +202,6 @@ class Rows:
         self.H_t = after(self.D, n_j * n_q)
         self.T_t, self.J_t = after(self.H_t, n_c), after(self.H_t, n_c + n_t)
         self.sliding, self.at_rest = after(self.H_t, n), after(self.H_t, n + n_t)
-        self.rebound = after(self.at_rest, n_t)
         self.elimination, self.blows = Elimination(n_j, n_c, n_q), Blows(n_q, n_c, n_t, n)
         self.looked_at = np.zeros(n_c if projected else 0, dtype=np.intp)
         self.repair = np.zeros(n_c + 2 * n + n_q * n_q + n * n_q + n * n if projected else 0)

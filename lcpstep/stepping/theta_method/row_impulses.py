@@ -159,8 +159,8 @@ def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool
         c.coefficients.use(c.problem.mu)
         for k in range(n_a):
             c.problem.slow[k] = max(c.problem.slow[k], c.blows.least)
-            c.rebound[c.problem.ids[k]] = m.restitution[c.problem.ids[k]] * brought(c, k)
-        return strike_in_turn(c.problem, c.rebound, n_a, n_f, -1)
+            c.problem.made[k] = max(0.0, c.blows.u[c.problem.ids[k]] - c.problem.rate[k])
+        return strike_in_turn(c.problem, m.restitution, n_a, n_f, -1)
     if n_f > 0 and c.coefficients.two:
         for k in range(n_a if impact else 0):
             c.problem.sum[k] = 1.0 if c.blows.u[c.problem.ids[k]] < -c.problem.slow[k] else 0.0
@@ -237,15 +237,6 @@ def strikes(s: State, c: Rows, n_a: int) -> bool:
         c.problem.slow[k] = forced(s, c, ids[k], c.problem.rate[k], size_v)
         found = found or c.blows.u[ids[k]] < -c.problem.slow[k]
     return found
-
-
-def brought(c: Rows, k: int) -> float:
-    """The part of the k-th contact's approach that the step begins with; the forces of the step have made the rest.
-
-    Restitution is of that part alone, as by the other laws: what rests again would else be thrown up in every step.
-    """
-    u, rate = c.blows.u[c.problem.ids[k]], c.problem.rate[k]
-    return u / rate if rate < u < 0.0 else 1.0
 
 
 def forced(s: State, c: Rows, i: int, rate: float, size_v: float) -> float:
