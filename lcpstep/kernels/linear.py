@@ -10,12 +10,13 @@ from math import sqrt
 
 import cython
 
-from lcpstep.pointers import Doubles, Indices, abs
+from lcpstep.kernels.vectors import size_of_product
+from lcpstep.pointers import Doubles, Indices, abs, after
 
 DEPENDENT = 2.0**-50  # relative rounding: what a row must have more of that the rows before it have not
-APART = (
-    2.0**-92
-)  # of the product of two rows' own mobilities: the square of one between them that is rounding
+ROUNDED = 2.0**-46  # of the terms of a sum: less is rounding of these, and of what they were solved for
+# Of the product of two rows' own mobilities: the square of one between them that is rounding, or may be
+APART, DOUBTFUL = 2.0**-92, 2.0**-64
 
 
 def factorise(A: Doubles, pivots: Indices, n: int) -> bool:
@@ -123,14 +124,21 @@ def grow_factor(D: Doubles, n_D: int, L: Doubles, n_L: int, rows: Indices, doubt
     return True
 
 
-def uncouple(W: Doubles, first: int, last: int, n: int) -> None:
-    """Take what rows of the mobilities W (n numbers a row) do to each other for nothing where it is rounding.
+def uncouple(W: Doubles, R: Doubles, X: Doubles, first: int, last: int, n: int, n_q: int) -> None:
+    """Take for nothing what is rounding in the mobilities W = R X^T (n numbers a row) of the rows from first to last.
 
-    In coordinates that mix bodies apart from each other the sums of which W is made cancel but for that. It would tie
-    a contact at rest to every blow elsewhere, and be all that a complementarity problem has in its row.
+    In coordinates that mix bodies apart from each other these sums cancel but for that. It would tie a contact at
+    rest to every blow elsewhere, and be all that a complementarity problem has in its row.
     """
     for i in range(first, last):
         for k in range(first, last):
-            both = W[i * n + k]
-            if both * both < APART * W[i * n + i] * W[k * n + k]:
+            both, own = W[i * n + k], W[i * n + i] * W[k * n + k]
+            if both != 0.0 and cancels(both, own, after(R, i * n_q), after(X, k * n_q), n_q):
                 W[i * n + k] = 0.0
+
+
+def cancels(both: float, own: float, row: Doubles, way: Doubles, n_q: int) -> bool:
+    """Whether a row times what another does is rounding; own: the product of what each of them does to itself."""
+    if not both * both < DOUBTFUL * own:
+        return False
+    return both * both < APART * own or abs(both) <= ROUNDED * size_of_product(row, way, 0, n_q)

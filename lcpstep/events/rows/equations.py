@@ -100,7 +100,7 @@ def respond(s: Rows) -> None:
         respond_to(s, i)
         for j in range(i + 1):
             couple(s, i, j)
-    uncouple(s.D, 0, s.n_r, s.n_r)
+    uncouple(s.D, s.R, s.MR, 0, s.n_r, s.n_r, s.n_q)
 
 
 def respond_held(s: Rows) -> None:

@@ -36,7 +36,7 @@ def leave_joints(s: Rows) -> None:
         put_on_joints(s, i)
         for k in range(s.n_j, i + 1):
             couple_on_joints(s, i, k)
-    uncouple(s.D_on, s.n_j, s.n_r, s.n_r)
+    uncouple(s.D_on, s.R_on, s.MR_on, s.n_j, s.n_r, s.n_r, s.n_q)
 
 
 def leave_joints_again(s: Rows, count: int) -> None:

@@ -20,7 +20,7 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles, indices
-from lcpstep.kernels.linear import factorise, solve, uncouple
+from lcpstep.kernels.linear import cancels, factorise, solve
 from lcpstep.kernels.vectors import add, clear, copy, largest, product, size_of_product
 from lcpstep.pointers import Doubles, Indices, abs, after, inf, max
 from lcpstep.stepping.steps import CONTRADICTION, RESOLUTION
@@ -198,7 +198,11 @@ def eliminate(
         e.swept = e.swept or not R[i * n_a + i] > NEARLY * W[ids[i] * n + ids[i]]
     if e.swept and n_j > 0:
         sweep_out(e, H, X, n_q, ids, n_a, n_j, R)
-    uncouple(R, 0, n_a, n_a)
+    for i in range(n_a):
+        for k in range(n_a):
+            both, own = R[i * n_a + k], R[i * n_a + i] * R[k * n_a + k]
+            if both != 0.0 and cancels(both, own, after(H, ids[i] * n_q), after(X, ids[k] * n_q), n_q):
+                R[i * n_a + k] = 0.0
 
 
 def sweep_out(

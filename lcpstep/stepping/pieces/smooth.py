@@ -115,7 +115,7 @@ def respond(m: Model, w: Work) -> None:
         n_k = filled(after(w.MG, c * w.n_q), w.n_q, w.moved)
         for d in range(w.n_c):
             w.W[d * w.n_c + c] = product_at(w.G, after(w.MG, c * w.n_q), d, w.n_q, w.moved, n_k)
-    uncouple(w.W, 0, w.n_c, w.n_c)
+    uncouple(w.W, w.G, w.MG, 0, w.n_c, w.n_c, w.n_q)
 
 
 def refactor(m: Model, w: Work, t: float) -> bool:
