@@ -170,6 +170,16 @@ def moved(d: Direction, s: float) -> State:
     return t + s * dt, q + s * dq, v + s * dv
 
 
+def within(span: tuple[float, float], t: float, unit: float) -> float:
+    """How long a direction of time is from t, so that the longest interval, twice that, keeps to the span.
+
+    A table, or a file, has nothing to say beyond it. Negative where it leads back.
+    """
+    start, end = span
+    room = max(end - t, t - start)
+    return math.copysign(min(unit, 0.5 * room), 1.0 if end - t >= room else -1.0)
+
+
 def _message(d: Direction, look: Look, row: int) -> str:
     """Which entry is wrong, what it is and what it should be, over the interval that tells it best."""
     k = np.flatnonzero(look.wrong[:, row])

@@ -16,7 +16,7 @@ import numpy as np
 from lagrangian import checks
 from lagrangian.checks import Array, Callback, read_only
 from lagrangian.contacts import Contacts, LinearContacts
-from lagrangian.derivatives import Direction, Known, Relation, State, compare
+from lagrangian.derivatives import Direction, Known, Relation, State, compare, within
 from lagrangian.joints import Joints
 from lagrangian.plain import python
 from lagrangian.system import LinearSystem
@@ -186,7 +186,7 @@ def _relations(ask: Asked, at: State) -> Iterator[Relation]:
         if system.frame is not None:
             yield _chain("system.frame", system.frame, ask, scene.n_q, at, duration)
     elif system.force_q is not None or system.force_v is not None:
-        yield _force(ask, system, _beside(ask, at, LATER * duration))
+        yield _force(ask, system, _beside(ask, at, LATER * within(scene.t_span, at[0], duration)))
     for name, c in _constraints(scene):
         if not isinstance(c, LinearContacts):
             yield _gap(name, c, ask, at, duration)
@@ -200,6 +200,7 @@ def _chain(name: str, f: Callback, ask: Asked, n: int, at: State, duration: floa
     """Rows (x, x', x'') of a function of time."""
     motion = ask.evaluated(f, (n, 3))
     names = lambda row: (f"{name}: out[{row // 2}, {row % 2 + 1}]", f"out[{row // 2}, {row % 2}]")  # noqa: E731
+    duration = within(ask.scene.t_span, at[0], duration)
     return Relation(
         value=lambda x: motion(x)[:, :2].ravel(),
         slope=lambda x, along: along[0] * motion(x)[:, 1:].ravel(),
@@ -212,6 +213,7 @@ def _gap(name: str, c: Any, ask: Asked, at: State, duration: float) -> Relation:
     G, g_t = _jacobian(name, c, ask), ask.evaluated(c.gap_t, (c.n_c,))
     given = f"{name}.gap_t" + (" (not given)" if c.gap_t is None else "")
     names = lambda row: (f"{given}[{row}]", f"{name}.gap[{row}]")  # noqa: E731
+    duration = within(ask.scene.t_span, at[0], duration)
     in_time = Direction(_beside(ask, at, 0.0), _ahead(ask.scene, duration), duration, False, names)
     base = _beside(ask, at, LATER * duration)
     return Relation(
@@ -225,7 +227,7 @@ def _bias(name: str, c: Any, ask: Asked, base: State, duration: float) -> Relati
     """G v + g_t with its derivative along the motion."""
     G, g_t = _jacobian(name, c, ask), ask.evaluated(c.gap_t, (c.n_c,))
     bias, v = ask.evaluated(c.bias, (c.n_c,)), base[2]
-    duration = min(duration, _size(base[1]) / _size(v))
+    duration = within(ask.scene.t_span, base[0], min(duration, _size(base[1]) / _size(v)))
     names = lambda row: (f"{name}.bias[{row}]", f"{name}.jacobian v + {name}.gap_t along the motion")  # noqa: E731
     return Relation(
         value=lambda x: G(x) @ v + g_t(x),

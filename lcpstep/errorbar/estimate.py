@@ -44,7 +44,7 @@ def error_bar(run: Trajectory, every: bool, seconds: float, wide: Array | None =
     wide : times between its steps at which the run has kept states too, so that no other run is needed for them
     """
     if len(run.t) < 2:
-        return unknown(run, "only one state was kept")
+        return unknown(run, "only one state was kept" if len(run.t) else "no state was kept")
     start, end = float(run.t[0]), _reached(run)
     if not end > start:
         return unknown(run, "the run ended where it began")
@@ -113,7 +113,8 @@ def _reached(run: Trajectory) -> float:
 
 def unknown(run: Trajectory, reason: str) -> ErrorBar:
     """The bar of a run that has none."""
-    start, missing = run.t[:1], np.full(len(run.impacts), math.nan)
+    start = run.t[:1] if len(run.t) else np.array(run.scene.t_span[:1])
+    missing = np.full(len(run.impacts), math.nan)
     position, velocity, energy = (
         Bar(np.full((1, k), math.inf), np.full((1, k), math.inf), unit)
         for k, unit in ((run.scene.n_q, "m"), (run.scene.n_q, "m/s"), (1, "J"))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.sparse import identity
 
-from lagrangian import Contacts, Harmonic, LinearSystem, Scene, scenes
+from lagrangian import Contacts, Harmonic, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, Status, simulate, study
 from lcpstep.cli import main
 from lcpstep.errorbar import companions, estimate
@@ -147,3 +147,18 @@ def test_a_study_compares_errors_with_bars():
         assert 0.5 < level.bars["sup_position"] < 2.0
         assert 0.5 < level.bars["l1_velocity"] < 2.0
     assert "error over error bar of Moreau: sup_position" in str(found)
+
+
+def test_a_run_that_ends_before_the_first_state_asked_for_has_a_bar_that_says_so():
+    calls = []
+
+    def at_random(t, q, v, p, out):  # no step of an event-driven run meets its tolerance
+        calls.append(None)
+        out[0] = 100.0 * (-1.0) ** len(calls)
+
+    scene = Scene(System(1, 1.0, lambda *a: at_random(*a)), 1.0, 0.0, (0.0, 1.0))
+    run = simulate(scene, EventDriven(), keep=[0.9, 1.0], error=True)
+    assert (run.status, len(run.t)) == (Status.STEP_TOO_SMALL, 0)
+    assert (run.error.reason, run.error.until) == ("no state was kept", 0.0)
+    assert run.error.position.sup == math.inf
+    assert "no state was kept" in str(run.error)

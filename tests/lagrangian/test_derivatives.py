@@ -168,6 +168,37 @@ def test_a_derivative_that_is_wrong_later_is_found_by_the_run(method):
     assert caught.value.trajectory.t[-1] == 2.0
 
 
+@pytest.mark.parametrize("flat", [True, False])
+@pytest.mark.parametrize("method", [Moreau(1e-3), EventDriven()], ids=["moreau", "event"])
+def test_nothing_is_compared_beyond_the_span_where_a_table_ends(method, flat):
+    t_of = np.linspace(0.0, 4.0, 17)
+    s_of = 0.1 * np.sin(3.0 * t_of)
+    speed = np.diff(s_of) / np.diff(t_of)  # the last one beyond the end too, where np.interp gives a constant
+
+    def rate(t):
+        return speed[min(int(np.searchsorted(t_of, t, side="right")) - 1, 15)]
+
+    def motion(t, q, v, p, out):
+        out[0, 0], out[0, 1], out[0, 2] = np.interp(t, t_of, s_of), rate(t), 0.0
+
+    def gap(t, q, v, p, out):
+        out[0] = q[0] - np.interp(t, t_of, s_of)
+
+    def jacobian(t, q, v, p, out):
+        out[0, 0] = 1.0
+
+    def gap_t(t, q, v, p, out):
+        out[0] = -rate(t)
+
+    contacts = LinearContacts(1.0, motion=lambda *a: motion(*a))
+    if not flat:
+        contacts = Contacts(1, lambda *a: gap(*a), lambda *a: jacobian(*a), lambda *a: gap_t(*a))
+    ball = LinearSystem(1.0, force=-9.81)
+    made = Scene(ball, 0.3, 0.0, (0.0, 4.0), contacts, corners=t_of[1:-1])
+    run = simulate(made, method)
+    assert run.q[-1, 0] == pytest.approx(s_of[-1], abs=1e-3)
+
+
 def many(n, wrong, calls):
     """So many coordinates, each above its own bowl."""
 
