@@ -30,7 +30,7 @@ class LinearContacts(Pickled):
     offset : (n_c,)   gap at q = 0, s = 0 [m]
     restitution : (n_c,) or one number for all contacts, 0 <= r <= 1; 0, the default, is plastic
     motion : callback filling out (n_c, 3), or None
-        out[i] = (s_i, s_i', s_i'') at time t: the obstacle's position, velocity and acceleration.
+        out[i] = (s_i, s_i', s_i'') at time t: the obstacle's position, velocity and acceleration; s_i is continuous.
     friction : Coulomb, or None for contacts without
 
     Raises
@@ -95,7 +95,7 @@ class Contacts(Pickled):
     Parameters
     ----------
     n_c : number of contacts
-    gap : callback filling out (n_c,)   g [m]; with friction a distance, and no other function that has its sign
+    gap : callback filling out (n_c,)   g [m], continuous; with friction a distance, and no other function of its sign
     jacobian : callback filling out (n_c, n_q)   G = dg/dq
     gap_t : callback filling out (n_c,), or None for gaps that do not depend on time   partial g / partial t
     bias : callback filling out (n_c,), or None   (dG/dt) v + d(g_t)/dt, the gap acceleration at v' = 0;

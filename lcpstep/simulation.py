@@ -17,6 +17,7 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget, forget_all
 from lcpstep.hearing import hearing
 from lcpstep.hops import too_short
+from lcpstep.leaps import leapt
 from lcpstep.outrun import outrun
 from lcpstep.prepared import prepared
 from lcpstep.recording import Keep, Kept
@@ -93,8 +94,8 @@ def simulate(
     -------
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
         end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large, where an
-        obstacle leaves no room to it, or its gap has no gradient where it is met, where steps are too long for the
-        forces that it meets, lose energy, turn by more than a radian what holds the motion, see no period of its
+        obstacle leaves no room to it, leaps, or its gap has no gradient where it is met, where steps are too long for
+        the forces that it meets, lose energy, turn by more than a radian what holds the motion, see no period of its
         oscillations or of its hops, or make it faster than forces and obstacles could, or where contacts slide that
         share a normal, with friction in two directions
 
@@ -168,6 +169,7 @@ def _looked_over(run: Trajectory) -> Trajectory:
         _warn_of_fast_gaps(run)
         doubt = (
             _of_obstacles(run)
+            or leapt(run)
             or too_deep(run)
             or unresolved(run)
             or turned(run)
