@@ -25,6 +25,7 @@ ROUNDING = 1e-9  # of the coordinates: no way
 STEPS = 4  # that are looked at, those that went furthest
 JUST_BEFORE = 4 * float(np.finfo(float).eps)  # of a time
 HALVINGS = 48  # of a step: down to the resolution of its place
+NEAREST = 8  # contacts that are looked at, those that are closed or all but closed after the step
 PART = 0.1  # of the way without a velocity, that one leap is at least
 STILL_CLOSED = 0.5  # of the leap: a gap below it after the step
 
@@ -66,18 +67,19 @@ def _leap(
 ) -> tuple[int, float, float] | None:
     """Contact, time and size of the leap of a gap between two states, if there is one that is still closed."""
     (t, q, v), way = start, end[1] - start[1]
-    t = max(
-        scene.t_span[0], t - JUST_BEFORE * max(abs(t), end[0] - t)
-    )  # a state may be kept at the very time of it
+    # A state may be kept at the very time of a leap
+    t = max(scene.t_span[0], t - JUST_BEFORE * max(abs(t), end[0] - t))
 
     def gaps(share: float) -> Array:
         return depth.gaps(scene, [(t + share * (end[0] - t), q + share * way, v)])[0]
 
-    for c in range(scene.n_c):
+    begun, ended = gaps(0.0), gaps(1.0)
+    for c in map(int, np.argsort(ended)[:NEAREST]):
         straight = float(depth.normal(scene, c, start) @ way)
-        low, high, before, after = 0.0, 1.0, gaps(0.0)[c], gaps(1.0)[c]
-        last = after
-        for _ in range(HALVINGS if straight else 0):
+        if abs(ended[c] - begun[c] - straight) <= PART * abs(straight):
+            continue
+        low, high, before, after = 0.0, 1.0, begun[c], ended[c]
+        for _ in range(HALVINGS):
             middle = 0.5 * (low + high)
             if not low < middle < high:
                 break
@@ -87,6 +89,6 @@ def _leap(
             else:
                 low, before = middle, now
         size = abs(after - before)
-        if size > PART * abs(straight) and last < STILL_CLOSED * size:
+        if size > PART * abs(straight) and ended[c] < STILL_CLOSED * size:
             return c, t + high * (end[0] - t), size
     return None

@@ -94,10 +94,10 @@ def simulate(
     -------
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
         end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large, where an
-        obstacle leaves no room to it, leaps, or its gap has no gradient where it is met, where steps are too long for
-        the forces that it meets, lose energy, turn by more than a radian what holds the motion, see no period of its
-        oscillations or of its hops, or make it faster than forces and obstacles could, or where contacts slide that
-        share a normal, with friction in two directions
+        obstacle leaves no room to it, leaps, or its gap has no gradient where it is met, or is positive on both sides
+        of it, where steps are too long for the forces that it meets, lose energy, turn by more than a radian what
+        holds the motion, see no period of its oscillations or of its hops, or make it faster than forces and
+        obstacles could, or where contacts slide that share a normal, with friction in two directions
 
     Raises
     ------
@@ -238,13 +238,14 @@ def _compare_derivatives(run: Trajectory) -> None:
 
 
 def _of_obstacles(run: Trajectory) -> str:
-    """Which obstacle has left no room, or has no normal, in words; a flat one always has both."""
+    """Which obstacle has left no room, or has no normal or no inside, in words; a flat one always has all three."""
     if not isinstance(run.scene.contacts, Contacts):
         return ""
     from lcpstep.normals import no_normal
     from lcpstep.room import no_room
+    from lcpstep.sides import passed_through
 
-    return no_room(run) or no_normal(run)
+    return no_room(run) or no_normal(run) or passed_through(run)
 
 
 def _warn_of_fast_gaps(run: Trajectory) -> None:

@@ -131,3 +131,14 @@ def responses(m: Model, t: Any, q: Any, v: Any) -> tuple[Any, Any]:
             for c in range(m.n_c):
                 divide_by_mass(m, at[k], q_k, v_k, after(y, n), y, after(back, k * size + c * n))
     return G, MG
+
+
+@cython.ccall
+def gradients_at(m: Model, t: Any, q: Any) -> Any:
+    """Those of every gap at these times and positions, (n, n_c, n_q)."""
+    found, rest, own = np.zeros((len(t), m.n_c, m.n_q)), np.zeros(m.n_q), np.zeros(m.n_c)
+    count, at, x, x_t, g_t, out = len(t), doubles(t), doubles(q), doubles(rest), doubles(own), doubles(found)
+    with cython.nogil:
+        for k in range(count):
+            gap_rates(m, at[k], after(x, k * m.n_q), x_t, after(out, k * m.n_c * m.n_q), g_t)
+    return found
