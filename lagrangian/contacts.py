@@ -99,7 +99,8 @@ class Contacts(Pickled):
     jacobian : callback filling out (n_c, n_q)   G = dg/dq
     gap_t : callback filling out (n_c,), or None for gaps that do not depend on time   partial g / partial t
     bias : callback filling out (n_c,), or None   (dG/dt) v + d(g_t)/dt, the gap acceleration at v' = 0;
-        differenced along the motion where not given (the event-driven integrator needs it)
+        differenced along the motion where not given (the event-driven integrator needs it), up to 2 ms away, also
+        beyond the ends of the span, unless they are among the scene's `corners`
     restitution : (n_c,) or one number for all contacts, 0 <= r <= 1; 0, the default, is plastic
     friction : Coulomb, or None for contacts without
     lipschitz : (n_c,) or one number for all contacts, or None

@@ -57,6 +57,8 @@ def levels_of(
             values, make = [dial(m)[1] for m in methods], methods
         else:
             values = list(default if values is None else values)
+            if not values:
+                raise ValueError(f"{argument}: expected at least one number, got none")
             make = [methods[0]] * len(values)
         levels: dict[float, Method] = {}
         for value, method in zip(values, make, strict=True):

@@ -16,6 +16,7 @@ from lagrangian import HybridScene, Scene, checks
 from lcpstep.events import EventDriven
 from lcpstep.maps import follow, lockstep, modes
 from lcpstep.maps.one_by_one import one_by_one
+from lcpstep.maps.repeating import check_period
 from lcpstep.maps.task import (
     INSIDE as INSIDE,
 )  # in place of a `Status`: the start lies inside of the obstacle
@@ -80,10 +81,12 @@ class Targets:
 
 
 def periodic(scene: Scene | HybridScene, what: str = "stroboscopic map") -> None:
-    """Refuse a scene without a period, and say what would give it one; TypeError for what is no scene."""
+    """Refuse a scene with a wrong period, or none, and say what would give it one; TypeError for what is no scene."""
     if not isinstance(scene, (Scene, HybridScene)):
         raise TypeError(f"scene: expected a lagrangian.Scene or HybridScene, got {scene!r}")
     if math.isfinite(scene.period):
+        if isinstance(scene, Scene):
+            check_period(scene)
         return
     drive = scene.parameters.get("amplitude")
     hint = "; it is driven where its parameter amplitude is not zero" if drive == 0.0 else ""
@@ -125,7 +128,7 @@ def periods(
 
     Raises
     ------
-    ValueError   the scene has no period, or a number is out of range
+    ValueError   the scene has no period, or a wrong one, or a number is out of range
     LcpStepError   what the method itself raises for this scene
     """
     periodic(scene)

@@ -35,7 +35,7 @@ class StroboscopicMap:
 
     Raises
     ------
-    ValueError   the scene has no period, or phase is out of range
+    ValueError   the scene has no period, or a wrong one, or phase is out of range
 
     Examples
     --------

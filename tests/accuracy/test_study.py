@@ -135,6 +135,8 @@ def test_a_closed_form_is_a_reference_and_is_checked():
         study(scene, Moreau(), h=[0.1], reference=lambda t: (np.sin(t), np.cos(t)))
     with pytest.raises(TypeError, match="reference"):
         study(scene, Moreau(), h=[0.1], reference="exact")
+    with pytest.raises(ValueError, match=r"^h: expected at least one number, got none"):
+        study(scene, Moreau(), h=[])
 
 
 def test_a_poor_reference_is_said_to_be_one():
