@@ -9,17 +9,15 @@ sought between which it has, and the gap on the straight line between them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Contacts
 from lcpstep.faults import cause, forget
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.states import gaps_at, gradients_at
+from lcpstep.model import looked_at
 from lcpstep.trajectory import Status, Trajectory
-
-if TYPE_CHECKING:
-    from lcpstep.kernels.model import Model
 
 Array = NDArray[np.float64]
 LOOKS = 64  # states that are looked at,
@@ -35,8 +33,6 @@ def passed_through(run: Trajectory) -> str:
     scene, last = run.scene, len(run.t) - 1
     if not isinstance(scene.contacts, Contacts) or run.status != Status.DONE or last < 1:
         return ""
-    from lcpstep.model import looked_at
-
     told = _told(run, looked_at(scene), min(LOOKS, ENTRIES // (scene.n_c * scene.n_q)))
     cause()  # a callback that fails at a state that the run has not asked it for
     forget()
@@ -59,8 +55,6 @@ def _told(run: Trajectory, m: Model, looks: int) -> str:
 
 def _gradients(m: Model, t: Array, q: Array) -> Array:
     """Those of all gaps at some states, (n, n_c, n_q)."""
-    from lcpstep.kernels.states import gradients_at
-
     return np.asarray(gradients_at(m, np.ascontiguousarray(t), np.ascontiguousarray(q)))
 
 
@@ -77,8 +71,6 @@ def _between(m: Model, run: Trajectory, low: int, high: int, c: int, G: Array) -
 
 def _zero(m: Model, run: Trajectory, k: int, c: int) -> float | None:
     """When the gap is zero between a state and the next, where it is positive and turns about; else None."""
-    from lcpstep.kernels.states import gaps_at
-
     (t, later), (start, end) = run.t[k : k + 2], run.q[k : k + 2]
     first, last = _gradients(m, run.t[k : k + 2], run.q[k : k + 2])[:, c]
     if not first @ last < ABOUT * np.linalg.norm(first) * np.linalg.norm(last):
