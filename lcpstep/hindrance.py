@@ -10,6 +10,7 @@ from lcpstep.culprits import failing
 from lcpstep.kinks import valley
 from lcpstep.model import unrepeatable
 from lcpstep.room import closes_upon
+from lcpstep.sticking import held
 
 Array = NDArray[np.float64]
 LOOKS = 17  # ahead in a straight line
@@ -23,7 +24,7 @@ def hindrance(scene: Scene, t: float, until: float, q: Array, v: Array) -> str:
     names = " and ".join(unrepeatable(scene, t, q, v))
     if names:
         return f"{names} must be functions of time and state, and are not"
-    found = closes_upon(scene, t, q) or valley(scene, t, q, v)
+    found = closes_upon(scene, t, q) or valley(scene, t, q, v) or held(scene, t, q, v)
     if found:
         return found
     fails = failing(scene, np.linspace(t, max(t, until), LOOKS), q, v)

@@ -27,6 +27,7 @@ from lcpstep.model import unrepeatable
 from lcpstep.pace import Pace, tell
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.standstill import Standstill
+from lcpstep.sticking import held
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]
@@ -217,6 +218,10 @@ class Run(Portions):
             return text
         q, v = self.state
         found = hindrance(self.scene, self.now, self.horizon, q.copy(), v.copy())
+        if (
+            not found and code == Status.NEWTON_FAILED
+        ):  # within a step, whose velocities are not those of its start
+            found = held(self.scene, self.now, q.copy(), v.copy(), self.horizon - self.now)
         if not found and code == Status.STEP_TOO_SMALL and not self.stuck:
             found = "a larger tolerance may do"
         return f"{text}: {found}" if found else text
