@@ -9,16 +9,16 @@ System                        force: force_q and force_v;   mass: its own transp
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lagrangian import checks
-from lagrangian.checks import Array, Callback, read_only
+from lagrangian.asked import Asked, in_python
+from lagrangian.checks import Array, Callback
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.derivatives import Direction, Known, Relation, State, compare, within
 from lagrangian.joints import Joints
-from lagrangian.plain import python
 from lagrangian.system import LinearSystem
 
 if TYPE_CHECKING:
@@ -32,35 +32,6 @@ LATER = 0.0274  # of half the span: the same of the time
 LARGE = 4096  # entries of a matrix
 GOLDEN = 0.6180339887498949
 KNOWN = Known()
-
-
-class Asked(NamedTuple):
-    """A scene whose functions are evaluated, and by what: `prepared(f, scene, shape)` gives what fills in `out`."""
-
-    scene: Scene
-    prepared: Callable[[Callback, Scene, tuple[int, ...]], Callable[[float, Array, Array, Array], None]]
-
-    def evaluated(self, f: Callback | None, shape: tuple[int, ...]) -> Callable[[State], Array]:
-        """A callback as a function of the state: zero where there is none, not-a-number where it fails."""
-        if f is None:
-            return lambda x: np.zeros(shape)
-        fill = self.prepared(f, self.scene, shape)
-
-        def value(x: State) -> Array:
-            out = np.full(shape, np.nan)
-            try:
-                fill(*x, out)
-            except Exception:  # a state that the motion may never reach
-                out.fill(np.nan)
-            return out
-
-        return value
-
-
-def in_python(f: Callback, scene: Scene, _: tuple[int, ...]) -> Callable[[float, Array, Array, Array], None]:
-    """A callback that runs in Python alone."""
-    g, p = python(f), read_only(np.array(scene.p))
-    return lambda t, q, v, out: g(t, read_only(q), read_only(v), p, out)
 
 
 def is_large(scene: Scene) -> bool:
@@ -96,6 +67,26 @@ def check_derivatives(
             _check_arguments(ask, at)
             for relation in _relations(ask, at):
                 compare(relation)
+    seen.add(p.tobytes())
+
+
+def check_force_of_time(scene: Scene) -> None:
+    """ValueError where the force of a LinearSystem depends on its state: steps that solve for it do not ask there.
+
+    Once for a function and parameters.
+    """
+    force: Any = scene.system.force
+    if not (isinstance(scene.system, LinearSystem) and callable(force)):
+        return
+    p = np.asarray(scene.p)
+    seen = KNOWN.of([force]).parameters.setdefault((scene.n_q, len(p)), set())
+    if p.tobytes() in seen or len(seen) >= ENOUGH:
+        return
+    ask, at = Asked(scene, in_python), (scene.t_span[0], np.array(scene.q0), np.array(scene.v0))
+    with np.errstate(all="ignore"):
+        other = (at[0], *_beside(ask, at, 0.0)[1:])
+        name = "system.force (that of a System may depend on q and v)"
+        _check_same(name, "time", ask.evaluated(force, (scene.n_q,)), at, other)
     seen.add(p.tobytes())
 
 

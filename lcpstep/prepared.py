@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from lagrangian import Scene, checks
+from lagrangian.asked import in_python
 from lagrangian.checks import Array, Callback
-from lagrangian.relations import in_python
 from lcpstep import callbacks
 from lcpstep.faults import fault, forget, note
 from lcpstep.kernels.function import Function

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene
+from lagrangian.asked import in_python
 from lagrangian.checks import shown
 from lagrangian.derivatives import Known
-from lagrangian.relations import in_python
 
 TIMES = (np.arange(8) + 0.6180339887498949) / 8.0  # of the period: at none of its simple parts
 APART = 0.02  # of how far a function goes in these: less may be a period that is rounded
