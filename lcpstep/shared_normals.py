@@ -15,6 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import LinearContacts, Scene
+from lcpstep.faults import cause, forget
+from lcpstep.kernels.model import Model
+from lcpstep.kernels.states import gaps_at, gradients_at
+from lcpstep.model import looked_at
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
@@ -35,8 +39,12 @@ def slide_on_one(run: Trajectory) -> str:
         return ""
     looked = np.unique(np.linspace(1, len(run.t) - 1, LOOKS).astype(int))
     places = looked[:1] if isinstance(contacts, LinearContacts) else looked[:: max(1, len(looked) // PLACES)]
+    m = looked_at(run.scene)
+    near = {int(k): _near(m, float(run.t[k]), run.q[k].copy()) for k in places}
+    cause()  # a callback that fails at a state which the run has not asked it for
+    forget()
     try:
-        pairs = {x for k in places for x in _pairs(run.scene, *_state(run, k))}
+        pairs = {x for k in near for x in _rough(run.scene, near[k], *_state(run, k))}
         least = _of_rest(run) if pairs else 0.0
         for k in looked if pairs else ():
             for c, d in sorted(pairs):
@@ -47,7 +55,7 @@ def slide_on_one(run: Trajectory) -> str:
                         f"{run.t[k]:.9g} s: no law says which of them carries the load, so that their friction is "
                         "one of many; it acts along one direction a contact"
                     )
-    except ValueError:  # a callback that fails at a state which the run has not asked it for
+    except ValueError:  # the same
         return ""
     return ""
 
@@ -60,29 +68,33 @@ def _state(run: Trajectory, k: int) -> tuple[float, Array, Array]:
 def _of_rest(run: Trajectory) -> float:
     """The velocity of a coordinate that is none."""
     from lcpstep.errorbar.distance import fall
-    from lcpstep.model import looked_at
 
     return AT_REST * fall(looked_at(run.scene), run)
 
 
-def _pairs(scene: Scene, t: float, q: Array, v: Array) -> list[tuple[int, int]]:
-    """Rough contacts at one place with one normal, of which the rows of friction differ."""
-    contacts, p = scene.contacts, np.array(scene.p)
-    assert contacts is not None
-    assert contacts.friction is not None
-    friction, N = contacts.friction, np.asarray(contacts.normals(t, q, v, p))
-    rough = np.full(len(N), True) if callable(friction.mu) else np.asarray(friction.mu) > 0.0
+def _near(m: Model, t: float, q: Array) -> list[tuple[int, int, Array]]:
+    """Contacts at one place with one normal, and that."""
+    at, here = np.array([t]), q[None]
+    N, g = np.asarray(gradients_at(m, at, here)[0]), np.asarray(gaps_at(m, at, here)[0])
     sizes = np.sum(N * N, axis=1)
-    across = np.outer(sizes, sizes) - np.maximum(N @ N.T, 0.0) ** 2
-    near = (across <= SAME * np.outer(sizes, sizes)) & np.outer(rough, rough) & (np.outer(sizes, sizes) > 0.0)
-    g, T = scene.gap(t, q, v)[0], np.asarray(friction.tangents((t, q, v, p), len(N)))
+    both = np.outer(sizes, sizes)
+    alike = (both - np.maximum(N @ N.T, 0.0) ** 2 <= SAME * both) & (both > 0.0)
     g = g / np.sqrt(np.maximum(sizes, np.finfo(float).tiny))
     scale = 1e-8 * max(1.0, float(np.max(np.abs(q))))
-    return [
-        (c, d)
-        for c, d in np.argwhere(np.triu(near, 1)).tolist()
-        if abs(g[c] - g[d]) <= scale and _differ(N[c], T[c], T[d])
-    ]
+    pairs = np.argwhere(np.triu(alike, 1)).tolist()
+    return [(c, d, N[c]) for c, d in pairs if abs(g[c] - g[d]) <= scale]
+
+
+def _rough(
+    scene: Scene, near: list[tuple[int, int, Array]], t: float, q: Array, v: Array
+) -> list[tuple[int, int]]:
+    """Those of these pairs that rub along more than one direction."""
+    if not near:
+        return []
+    friction: Any = scene.contacts.friction if scene.contacts is not None else None
+    T = np.asarray(friction.tangents((t, q, v, np.array(scene.p)), scene.n_c))
+    rough = np.full(scene.n_c, True) if callable(friction.mu) else np.asarray(friction.mu) > 0.0
+    return [(c, d) for c, d, N in near if rough[c] and rough[d] and _differ(N, T[c], T[d])]
 
 
 def _differ(N: Array, T: Array, other: Array) -> bool:
