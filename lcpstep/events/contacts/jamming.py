@@ -25,7 +25,7 @@ from lcpstep.kernels.vectors import clear
 from lcpstep.pointers import abs, inf, max
 
 SHORT = 1e-11  # of the fastest sliding: what forces change in no time, a hundred times what impulses leave
-LEFT = 1e-6  # the same: impulses that change less are those of forces
+LEFT = 1e-8  # the same: impulses that change less are those of forces
 
 
 def jam(s: Rubbing, t: float) -> int:
@@ -82,10 +82,13 @@ def jam_together(s: Rubbing, n_a: int, n_f: int) -> bool:
     if not solve_contacts(s.problem, n_a, n_f):
         return False
     some = False
-    for a in range(m):
-        if s.problem.mobility[a * m + a] * abs(s.problem.impulse[a]) <= LEFT * fastest:
+    for a in range(n_a):
+        if s.problem.mobility[a * m + a] * s.problem.impulse[a] <= LEFT * fastest:
             s.problem.impulse[a] = 0.0
         some = some or s.problem.impulse[a] != 0.0
+    for f in range(n_f):
+        if s.problem.impulse[s.problem.carrier[f]] == 0.0:
+            s.problem.impulse[n_a + f] = 0.0
     for i in range(2 * s.n_c):
         s.terms[i] = max(s.terms[i], 2.0 * SHORT * fastest)
     return some
