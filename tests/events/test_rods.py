@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lcpstep import EventDriven, Located, Status, simulate
+from lcpstep import EventDriven, Located, Moreau, Status, simulate
 from tests.random_rods import METHODS, rods
 
 
@@ -23,3 +23,13 @@ def test_a_rod_slips_when_it_does_and_not_when_others_are_looked_at(h):
     for tolerance in (1e-5, 1e-6, 1e-8):
         run = simulate(rods(55), Located(h, order=4, tolerance=tolerance))
         assert np.max(np.abs(run.q[-1] - true.q[-1])) < 2.0 * tolerance
+
+
+@pytest.mark.parametrize("seed", [2, 3, 17, 25])
+def test_ends_at_one_place_do_not_hand_their_load_over_without_end(seed):
+    """Two ends that a joint links touch the floor together: Newton's iteration went to and fro between them."""
+    true = simulate(rods(seed), METHODS[0], keep=[1.0])
+    coarse, fine = (simulate(rods(seed), Moreau(h), keep=[1.0]) for h in (1e-3, 1e-4))
+    assert coarse.status == fine.status == Status.DONE
+    errors = [np.max(np.abs(run.q[-1] - true.q[-1])) for run in (coarse, fine)]
+    assert errors[1] < max(0.2 * errors[0], 1e-3)

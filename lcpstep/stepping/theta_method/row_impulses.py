@@ -16,7 +16,7 @@ from lcpstep.kernels.stiction import rest_where_possible, solve_steps
 from lcpstep.kernels.vectors import finite, largest, product, size_of_product
 from lcpstep.pointers import Doubles, Indices, abs, after, max
 from lcpstep.stepping.constraints.joint_rows import distribute, eliminate, lost
-from lcpstep.stepping.steps import CANCELLED, CONVERGED, NO_APPROACH, RESOLUTION, ROUNDING
+from lcpstep.stepping.steps import CANCELLED, CONVERGED, NO_APPROACH, RESTING, ROUNDING
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.responses import respond
@@ -260,10 +260,10 @@ def apply(plan: Plan, s: State, c: Rows, n_k: int) -> bool:
         if c.n_f > 0 and abs(total) <= ROUNDING * terms:
             total = 0.0
         change = max(change, abs(total - s.next_v[i]))
-        moved = max(moved, plan.h * abs(total - s.next_v[i]) - RESOLUTION * abs(s.q[i]))
+        moved = max(moved, plan.h * abs(total - s.next_v[i]))
         size = max(max(size, abs(total)), max(abs(s.v[i]), CANCELLED * terms))
         s.next_v[i] = total
-    s.moved = moved
+    s.moved = max(0.0, moved - RESTING * largest(s.q, 0.0, n_q))
     return change <= CONVERGED * size
 
 

@@ -56,6 +56,9 @@ from lcpstep.stepping.theta_method.row_impulses import (
     take_part,
 )
 
+UNDECIDED = 14  # iterations after which contacts that bear nothing by turns are left out
+ALIKE = 1e-2  # of a gap velocity's terms: by so much it may close then
+
 
 def take_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> int:
     """One step into next_q, next_v and the impulses; its events are noted. Says how it went."""
@@ -122,7 +125,7 @@ def closes_again(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> bool
 
 def step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> int:
     """One step with the active contacts into next_q, next_v, and the impulses."""
-    n_a, c.n_f = s.active, 0
+    n_a, c.n_f, idle = s.active, 0, 0
     if c.n > c.n_c:
         take_part(c, n_a)
     if n_a > 0:
@@ -166,12 +169,17 @@ def step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> in
         if apply(plan, s, c, n_k) or (m.linear and not c.turning):
             break
         s.iteration += 1
+        if s.iteration >= UNDECIDED and c.n_j > 0:
+            idle = leave_out_idle(s, c, n_a, idle)
+            n_a = s.active
         if s.iteration >= MAX_ITERATIONS:
             if s.moved > 0.0:
                 return NEWTON_FAILED
             break  # forces that cancel, at places which rounding does not tell apart
     if c.coefficients.two or c.n_f > 1:
         note_sticking(s, c, n_a, c.n_f)
+    if idle > 0 and not take_back_idle(s, c, n_a, idle):
+        return NEWTON_FAILED
     position(plan, s)
     if c.n_j == 0:
         return FINISHED
@@ -179,6 +187,40 @@ def step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> in
         c.J, c.J_t, c.J_start, c.n_j, s.v, s.v_free, s.next_v, s.n_q, plan.X, c.p, c.n, c.turning, c.failed
     )
     return FINISHED if hold else JOINTS_FAILED
+
+
+def leave_out_idle(s: State, c: Rows, n_a: int, idle: int) -> int:
+    """Leave out, after `idle` others, those of n_a active contacts that bear nothing in the last iteration; how many.
+
+    Two at one place, as ends of rods that a joint links, hand their load over to each other without end.
+    """
+    ids, kept = c.problem.ids, 0
+    for k in range(n_a):
+        i = ids[k]
+        ids[k], ids[kept] = ids[kept], i
+        kept += 1 if c.p[i] > 0.0 else 0
+    if kept == 0 or kept == n_a:
+        return idle
+    for k in range(kept, n_a):
+        c.left_out[idle + k - kept] = ids[k]
+    s.active = kept
+    take_part(c, kept)
+    return idle + n_a - kept
+
+
+def take_back_idle(s: State, c: Rows, n_a: int, idle: int) -> bool:
+    """Whether contacts left out do not close by more than places in a step differ; they are active all the same."""
+    for k in range(idle):
+        i = c.left_out[k]
+        u, size = c.H_t[i], abs(c.H_t[i])
+        for j in range(s.n_q):
+            u += c.H[i * s.n_q + j] * s.next_v[j]
+            size += abs(c.H[i * s.n_q + j]) * (abs(s.next_v[j]) + abs(s.v_free[j]))
+        if u < -ALIKE * size:
+            return False
+        c.problem.ids[n_a + k] = i
+    s.active = n_a + idle
+    return True
 
 
 def position(plan: Plan, s: State) -> None:
