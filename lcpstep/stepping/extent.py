@@ -38,9 +38,30 @@ def extent(
 @cython.ccall
 def places(m: Model, q: Any, v: Any, step: float) -> float:
     """The largest of places, offsets and ways within a step that v leads along [m]."""
+    return largest(m.offset, ways(m, q, v, step), m.n_c)
+
+
+@cython.ccall
+def ways(m: Model, q: Any, v: Any, step: float) -> float:
+    """The largest of places and ways within a step that v leads along [m]."""
     at, at_rate = doubles(q), doubles(v)
-    found = max(largest(at, 0.0, m.n_q), step * largest(at_rate, 0.0, m.n_q))
-    return largest(m.offset, found, m.n_c)
+    return max(largest(at, 0.0, m.n_q), step * largest(at_rate, 0.0, m.n_q))
+
+
+@cython.ccall
+def own_places(m: Model, q: Any, v: Any, step: float, target: Any) -> None:
+    """Places as each contact has them into the target (n_c,): another one's offset rounds no gap of its.
+
+    Where all of its own are zero, the others' tell of a smaller scale, but of none above 1.
+    """
+    found, own = ways(m, q, v, step), doubles(target)
+    most = largest(m.offset, found, m.n_c)
+    if most == 0.0 or most > 1.0:
+        most = 1.0
+    for c in range(m.n_c):
+        own[c] = max(found, abs(m.offset[c]))
+        if own[c] == 0.0:
+            own[c] = most
 
 
 @cython.cfunc

@@ -57,8 +57,10 @@ class SparseRun(StepRun):
         recorder = Recorder(n_q, n, kept)
         super().__init__(method, scene, kept, recorder, LOOKS)
         self.equations = Equations(scene)
-        size = largest(scene.q0, self.equations.offset, method.h * np.asarray(scene.v0))
-        self.slack = RESTING * (size or 1.0)
+        size = largest(scene.q0, method.h * np.asarray(scene.v0))
+        own, most = np.maximum(size, np.abs(self.equations.offset)), largest(self.equations.offset)
+        # Of each contact: another one's offset rounds no gap of its, and tells of no scale above 1
+        self.slack = RESTING * np.where(own > 0.0, own, min(most, 1.0) or 1.0)
         self.q, self.v, self.now = np.array(scene.q0), np.array(scene.v0), scene.t_span[0]
         self.p, self.impulse = np.zeros(n_c), np.zeros(n)
         self.closed, self.active = np.zeros(n_c, dtype=np.int64), np.zeros(n_c, dtype=bool)
@@ -139,7 +141,9 @@ class SparseRun(StepRun):
         if len(in_doubt):
             size = self.equations.G_rows.sizes(self.q)[in_doubt]
             late = UNTOLD * np.abs(self.now * (self.equations.G_rows.times(self.v) - self.u)[in_doubt])
-            active[in_doubt] = gap[in_doubt] <= self.slack + (RESTING + RESOLUTION * self.steps) * size + late
+            active[in_doubt] = (
+                gap[in_doubt] <= self.slack[in_doubt] + (RESTING + RESOLUTION * self.steps) * size + late
+            )
         return active
 
     def velocity(

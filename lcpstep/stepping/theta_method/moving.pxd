@@ -19,7 +19,7 @@ cdef class State:
     cdef Doubles q, v, force, g, u, impulse
     cdef Indices closed, sticks
     cdef Doubles next_q, next_v, next_force, v_free, q_between, v_between, R, try_v, try_q, try_f, M, M_start
-    cdef Doubles A, J, far
+    cdef Doubles A, J, far, slack
     cdef Indices pivots
 
 cdef class Blows:

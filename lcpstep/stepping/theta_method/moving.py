@@ -28,7 +28,7 @@ class Plan:
     """Matrices of a step, row by row.
 
     h, theta
-    slack                a predicted gap this small is closed: rounding must not open what rests
+    slack                positions off joints and in obstacles by this little need no projection
     constant             X and W are those of every step
     stiff                C or K is not zero: without them A^-1 has entries where M^-1 does, and A_q and A_v have none
     A_q : (n_q, n_q)     A^-1 h K
@@ -60,6 +60,7 @@ class State:
     g, u, closed     (n_c,) gaps and their velocities; 0 open, 1 struck in the last step, 2 closed for several steps
     sticks           (n_c,) 1 for contacts that the last step kept from sliding
     far              (n_c,) size of the largest terms of closed gaps since these closed
+    slack            (n_c,) predicted gaps this small are closed: rounding must not open what rests
     impulse          (n,) of all rows since the last kept state
     n_moving         how many numbers q, v, force, g, u and impulse are, in one piece in this order
     next_q, next_v, next_force, v_free    at the end of the step; the velocity without contact
@@ -91,7 +92,7 @@ class State:
         self.active = self.steps = self.problems = self.forces = self.iteration = 0
         self.moved = self.opened = 0.0
         self.record: Any = None
-        self.work = np.zeros((VECTORS + SQUARES * n_q) * n_q + n_c)
+        self.work = np.zeros((VECTORS + SQUARES * n_q) * n_q + 2 * n_c)
         self.next_force = doubles(self.work)
         self.next_q = after(self.next_force, n_q)
         self.next_v = after(self.next_q, n_q)
@@ -107,6 +108,8 @@ class State:
         self.A = after(self.M_start, n_q * n_q)
         self.J = after(self.A, n_q * n_q)
         self.far = after(self.J, n_q * n_q)
+        self.slack = after(self.far, n_c)
+        x["slack"] = self.work[len(self.work) - n_c :]
 
 
 class Blows:

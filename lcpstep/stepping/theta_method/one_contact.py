@@ -37,7 +37,7 @@ def in_registers(m: Model, plan: Plan, s: State, c: Rows, t0: float, first: int,
 
 def coast(m: Model, plan: Plan, s: State, t0: float, first: int, last: int) -> None:
     """Free steps, up to the first that has to do with the contact."""
-    h, theta, half, slack = plan.h, plan.theta, 0.5 * plan.h, plan.slack
+    h, theta, half, slack = plan.h, plan.theta, 0.5 * plan.h, s.slack[0]
     A_f, A_q, A_v = plan.A_f[0], plan.A_q[0], plan.A_v[0]
     G, offset = m.G[0], m.offset[0]
     q, v, g, u, f, k = s.q[0], s.v[0], s.g[0], s.u[0], s.force[0], s.steps
@@ -73,7 +73,7 @@ def press(m: Model, plan: Plan, s: State, c: Rows, t0: float, first: int, last: 
     h, theta, driven, moving = plan.h, plan.theta, varies(m), moves(m)
     while s.steps < last and not s.record.full(EVENTS):
         q, v, f, k, events = s.q[0], s.v[0], s.force[0], s.steps, s.record.event
-        if s.closed[0] == 0 and not s.g[0] + 0.5 * h * s.u[0] <= plan.slack:
+        if s.closed[0] == 0 and not s.g[0] + 0.5 * h * s.u[0] <= s.slack[0]:
             break
         t = t0 + h * (k + 1 - first)
         if driven:
@@ -106,7 +106,7 @@ def met(
     gap = g + 0.5 * plan.h * u
     drift = (RESTING + RESOLUTION * k) * (abs(G) * (abs(q) + plan.h * (abs(plan.X[0]) * c.p[0])))
     held = s.opened if closed > 1 else 0.0
-    if gap <= plan.slack + held or (closed > 0 and gap <= plan.slack + drift + UNTOLD * abs(t * g_t)):
+    if gap <= s.slack[0] + held or (closed > 0 and gap <= s.slack[0] + drift + UNTOLD * abs(t * g_t)):
         r = m.restitution[0] if abs(u) > c.blows.least else 0.0
         p = max(0.0, -(G * v + g_t + r * u) / plan.W[0])
         v += plan.X[0] * p

@@ -82,7 +82,7 @@ def predict_active(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
         s.far[i] = max(s.far[i], far) if s.closed[i] > 0 else 0.0
         gap = s.g[i] + 0.5 * plan.h * s.u[i]
         held = s.opened if s.closed[i] > 1 else 0.0
-        if gap <= plan.slack + held or (s.closed[i] > 0 and gap <= plan.slack + drifted(m, plan, s, c, i, t)):
+        if gap <= s.slack[i] + held or (s.closed[i] > 0 and gap <= s.slack[i] + drifted(m, plan, s, c, i, t)):
             c.problem.ids[n_a] = i
             n_a += 1
     s.active = n_a
@@ -113,7 +113,7 @@ def closes_again(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> bool
         gaps(m, t_next, s.next_q, s.next_v, c.gaps)
     n_a = more = s.active
     for i in range(c.n_c):
-        entered = s.closed[i] > 0 and c.gaps[i] < -plan.slack
+        entered = s.closed[i] > 0 and c.gaps[i] < -s.slack[i]
         for k in range(n_a):
             entered = entered and c.problem.ids[k] != i
         if entered:
