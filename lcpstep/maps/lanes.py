@@ -17,7 +17,8 @@ from lcpstep.kernels.dynamics import external_force, obstacle
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import copy
 from lcpstep.maps.answers import Answers
-from lcpstep.pointers import Doubles, max
+from lcpstep.pointers import Doubles, abs, inf, max
+from lcpstep.stepping.steps import TOUCHING
 from lcpstep.stepping.theta_method.moving import Plan
 
 
@@ -80,6 +81,20 @@ def advance(
                 note_impacts(lanes, a, t_next, k)
             count_closed(lanes.closed, lanes.p, lanes.n)
             f = lanes.force[0]
+
+
+@cython.ccall
+def note_touching(m: Model, lanes: Lanes, side: float) -> None:
+    """Contacts that begin at rest at next to no gap are closed: see `lcpstep.stepping.theta_method.beginning`."""
+    external_force(m, side, lanes.nobody, lanes.nobody, lanes.force)
+    force = abs(lanes.force[0])
+    if not m.force.given:
+        force = max(force, abs(m.constant[0]) + abs(m.cosine[0]) + abs(m.sine[0]))
+    for i in range(lanes.n):
+        pushed = abs(lanes.A_f) * force + abs(lanes.A_q * lanes.q[i]) + abs(lanes.A_v * lanes.v[i])
+        near = TOUCHING * lanes.h * pushed
+        if near < inf and abs(lanes.g[i]) <= near and lanes.h * abs(lanes.u[i]) <= near:
+            lanes.slack[i] = max(lanes.slack[i], near)
 
 
 def take_step(m: Model, lanes: Lanes, f: float, f_next: float) -> None:

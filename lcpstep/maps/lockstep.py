@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.faults import cause
 from lcpstep.maps.answers import Answers
-from lcpstep.maps.lanes import Lanes, advance
+from lcpstep.maps.lanes import Lanes, advance, note_touching
 from lcpstep.maps.task import INSIDE, Task
 from lcpstep.model import models
 from lcpstep.pace import Pace
@@ -62,6 +62,8 @@ class Lockstep:
         for period in range(task.periods):
             k = period - task.drop
             self.measure(own, task.t_start)
+            lanes.take(stretches[0][0])
+            note_touching(self.model, lanes, start_side(self.scene, task.t_start))
             for p, t0, first, last in stretches:
                 begin, side = first, start_side(self.scene, t0)
                 lanes.take(p)

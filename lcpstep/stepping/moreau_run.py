@@ -61,7 +61,7 @@ class MoreauRun(StepRun):
     def begin(self) -> int:
         """The initial state; a code."""
         t = self.scene.t_span[0]
-        self.loop.begin(t, start_side(self.scene, t))
+        self.loop.begin(t, start_side(self.scene, t), self.method.tolerance is None)
         if self.method.tolerance is not None:
             order, tolerance = 2 if self.method.theta == 0.5 else 1, self.method.tolerance
             span, h = self.scene.t_span, self.method.h

@@ -29,7 +29,7 @@ from lcpstep.stepping import interpolation
 from lcpstep.stepping.sparse_blows import Blows, forced, opens_and_closes
 from lcpstep.stepping.sparse_equations import Equations, Step
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, UNTOLD, largest, start_side
+from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, TOUCHING, UNTOLD, largest, start_side
 from lcpstep.trajectory import Counts, Kind, Status
 
 if TYPE_CHECKING:
@@ -87,11 +87,22 @@ class SparseRun(StepRun):
         self.F = self.equations.force(side, self.q, self.v)
         self.forces += 1
         self.g, self.u = self.gaps(side, self.q, self.v)
+        self.note_touching()
         times = self.kept.times
         if len(times) == 0 or times[0] == self.now:
             self.keep(self.now, self.q, self.v)
             self.recorder.record.next_time = min(1, len(times))
         return Status.DONE
+
+    def note_touching(self) -> None:
+        """Contacts that begin at rest at next to no gap are closed up to that: see `theta_method.beginning`."""
+        h, F = self.plan.h, np.abs(self.F)
+        if self.equations.harmonic:
+            F = np.maximum(F, sum(np.abs(term) for term in self.equations.terms))
+        near = TOUCHING * h * largest(self.plan.saddle.free(h * F))
+        if np.isfinite(near):
+            rests = (np.abs(self.g) <= near) & (h * np.abs(self.u) <= near)
+            self.slack = np.where(rests, np.maximum(self.slack, near), self.slack)
 
     def take(self, last: int) -> int:
         """Steps up to the one before `last`; why they ended."""

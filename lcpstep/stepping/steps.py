@@ -19,6 +19,7 @@ RESOLUTION = 2.0**-52
 WHOLE = 1e-9  # of a step: a span this close to a whole number of steps is taken as one
 LATE = 1e-9  # of a step: what rounding may take from the end of the last one
 RESTING = 1e-13  # of the size of the scene: a gap this small is closed
+TOUCHING = 1e-9  # of the way that forces push in a step: likewise, where a motion begins at rest
 UNTOLD = 4.0 * RESOLUTION  # of a time: its rounding, in which an obstacle moves on under a body
 TURNS = 200  # blows in a step of `Moreau` for each of its contacts; more go on in the next one
 LEFT = 1e-6  # of the fastest approach: what is slower ends in a plastic blow

@@ -10,6 +10,7 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import copy, finite
 from lcpstep.pointers import min
 from lcpstep.stepping.steps import LATE
+from lcpstep.stepping.theta_method.beginning import note_touching
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINITE
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.one_contact import in_registers
@@ -32,9 +33,14 @@ class Steps(Stepwise):
         self.single = single and rows.n == 1 and not rows.projected
 
     @cython.ccall
-    def begin(self, t: float, side: float) -> None:
-        """Forces and gaps of the initial state, which is kept where states are; side: see `steps.start_side`."""
+    def begin(self, t: float, side: float, of_one_size: bool) -> None:
+        """Forces and gaps of the initial state, which is kept where states are; side: see `steps.start_side`.
+
+        of_one_size : steps are as long as the plan says
+        """
         look(self.m, self.s, self.rows, side)
+        if of_one_size:
+            note_touching(self.m, self.plan, self.s, side)
         if self.s.record.n_times == 0:
             self.s.record.keep(t, 0.0, self.s.q, self.s.v, self.s.impulse)
         elif self.s.record.times[0] == t:
