@@ -63,6 +63,7 @@ class SparseRun(StepRun):
         self.slack = RESTING * np.where(own > 0.0, own, min(most, 1.0) or 1.0)
         self.q, self.v, self.now = np.array(scene.q0), np.array(scene.v0), scene.t_span[0]
         self.p, self.impulse = np.zeros(n_c), np.zeros(n)
+        self.far = np.zeros(n_c)  # size of the largest terms of closed gaps since these closed
         self.closed, self.active = np.zeros(n_c, dtype=np.int64), np.zeros(n_c, dtype=bool)
         self.steps = self.problems = self.forces = 0
 
@@ -148,9 +149,14 @@ class SparseRun(StepRun):
         """Contacts with g + (h/2) u <= 0, up to rounding; of closed ones up to what it may have opened them by."""
         gap = self.g + 0.5 * step.h * self.u
         active = gap <= self.slack
-        in_doubt = np.flatnonzero((self.closed > 0) & ~active)
+        closed = self.closed > 0
+        if not closed.any():
+            self.far[:] = 0.0
+            return active
+        self.far = np.where(closed, np.maximum(self.far, self.equations.G_rows.sizes(self.q)), 0.0)
+        in_doubt = np.flatnonzero(closed & ~active)
         if len(in_doubt):
-            size = self.equations.G_rows.sizes(self.q)[in_doubt]
+            size = self.far[in_doubt]
             late = UNTOLD * np.abs(self.now * (self.equations.G_rows.times(self.v) - self.u)[in_doubt])
             active[in_doubt] = (
                 gap[in_doubt] <= self.slack[in_doubt] + (RESTING + RESOLUTION * self.steps) * size + late

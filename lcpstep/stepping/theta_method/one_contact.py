@@ -104,7 +104,8 @@ def met(
     G, g_t, closed, p = m.G[0], -m.motion_now[1], s.closed[0], 0.0
     s.v_free[0], c.H[0], c.H_t[0] = v, G, g_t  # what a control by a tolerance looks at
     gap = g + 0.5 * plan.h * u
-    drift = (RESTING + RESOLUTION * k) * (abs(G) * (abs(q) + plan.h * (abs(plan.X[0]) * c.p[0])))
+    s.far[0] = max(s.far[0], abs(G * q)) if closed > 0 else 0.0
+    drift = (RESTING + RESOLUTION * k) * (s.far[0] + abs(G) * plan.h * (abs(plan.X[0]) * c.p[0]))
     held = s.opened if closed > 1 else 0.0
     if gap <= s.slack[0] + held or (closed > 0 and gap <= s.slack[0] + drift + UNTOLD * abs(t * g_t)):
         r = m.restitution[0] if abs(u) > c.blows.least else 0.0
