@@ -8,7 +8,8 @@ from lcpstep.trajectory import Kind, Status
 # sticks, keeps it from sliding. Without friction what is closed slides, and from an impact on, until the forces
 # decide, SLIDES says no more than closed
 OPEN, STICKS, SLIDES, LEANS = range(4)
-BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH = range(6)  # what comes next
+# What comes next: the start, smooth motion, impacts, modes by the forces, modes found ahead, a new mode of the system
+BEGIN, MOVE, JUMP, SETTLE, OBEY, SWITCH = range(6)
 LOOKED, ENTERED, JUMPED = range(3)  # whether guards of modes wait to be looked at, and why
 # Of `Kind`, whose STICK says that a contact stays closed, whether it sticks or slides
 IMPACT, ACCUMULATION, STAYS_CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE, JAM = (int(kind) for kind in Kind)

@@ -199,8 +199,8 @@ def strike_with(s: Rubbing, t: float, n_a: int, n_f: int, jammed: int, plastic: 
 def find_impulses(s: Rubbing, n_a: int, n_f: int, plastic: bool) -> bool:
     """Impulses of n_a contacts, n_f of them with tangents, by the law of impact; False where there are none.
 
-    By Moreau's law u+ + r u- = W p + (1 + r) u-: that is `rate`, for u- <= 0, and what has jumped at a corner; with
-    the tangents' it is the same.
+    By Moreau's law u+ + r u- = W p + rate: `rate` is (1 + r) min(u-, 0), and what has jumped at a corner; on
+    tangents (1 + r) u-, with their own r. Of a plastic impact, and of impacts in turn, it has u- instead.
     """
     own = s.in_turn or plastic
     for a in range(n_a):

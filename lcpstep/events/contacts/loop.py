@@ -50,7 +50,7 @@ NO_TIME = 2.0**-50
 
 
 class Course(Events):
-    """A motion with contacts and joints; s : Rubbing."""
+    """The loop over steps and events of s, a `Rubbing`: what `rows.next` asks for, or else a step of the motion."""
 
     def __init__(self, s: Rubbing) -> None:
         super().__init__(s.clock, s.clock.record.event_capacity - s.clock.record.event_capacity // 2)
@@ -70,7 +70,7 @@ class Course(Events):
         return code
 
     def move(self) -> int:
-        """A step of the motion, or what precedes it; a status."""
+        """A step of the motion, or what precedes it, and the impact of what jams; a status."""
         return yielding(self.s, go_further(self.s))
 
     @cython.ccall
@@ -80,7 +80,7 @@ class Course(Events):
 
 
 def occur(s: Rubbing) -> int:
-    """What comes next, at one time; a status."""
+    """Do what comes next (`rows.next`), which takes no time, and say what does after it; a status."""
     if s.rows.next == BEGIN:
         return begin(s)
     if s.rows.next == JUMP:
@@ -106,7 +106,7 @@ def yielding(s: Rubbing, code: int) -> int:
 
 
 def go_further(s: Rubbing) -> int:
-    """A step of the motion, or what precedes it; a status."""
+    """A step of the motion, or what precedes it: a look at guards, the first state kept, a corner; a status."""
     if s.watched and s.guards != LOOKED:
         look_at_guards(s)
         return DONE

@@ -56,7 +56,7 @@ def put_on_account(s: Contacts) -> None:
 
 
 def keep_event(s: Contacts, t: float) -> None:
-    """Keep the state after an event, if these are kept; events at one time share a row."""
+    """Keep the state after an event, q and the v behind it, if these are kept; events at one time share a row."""
     if s.record.keeps_events():
         s.record.take_back(t, s.impulse)
         keep(s, t, s.q)

@@ -102,8 +102,8 @@ class Work:
     impulse_from    impulses at the base of a piece within which states are kept
     since, next_zero     time since the start of the step to which gap and gap velocity belong, and of the next zero
     turned, turns   time since the start of the step at which a contact last struck, closed or opened, and how often
-                    it has done so with hardly any time between,
-    hops            or with little time between, beside contacts that are closed, and hardly moving
+                    it has done so with hardly any time between
+    hops            how often it has done so with little time between, hardly moving, beside closed contacts
     fall            speed at which a gap that falls freely from its last impact will close; 0: something else acts
 
     A whole number per contact:
