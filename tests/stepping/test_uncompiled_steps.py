@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrangian import scenes
-from lcpstep import Moreau, model, room, sides, simulate
+from lcpstep import Moreau, model, normals, room, shared_normals, sides, simulate
 from lcpstep.kernels import looks, outrun, record, states, surplus, turned
 from lcpstep.stepping import moreau_run
 from tests.marks import slow
@@ -23,8 +23,10 @@ def uncompiled(monkeypatch):
         monkeypatch.setattr(model, "Coefficients", plain.coefficients.Coefficients)
         monkeypatch.setattr(model, "_empty", model._empty.__wrapped__)
         monkeypatch.setattr(room, "gaps_at", plain.states.gaps_at)
-        monkeypatch.setattr(sides, "gaps_at", plain.states.gaps_at)
-        monkeypatch.setattr(sides, "gradients_at", plain.states.gradients_at)
+        monkeypatch.setattr(normals, "gradients_at", plain.states.gradients_at)
+        for module in (shared_normals, sides):
+            monkeypatch.setattr(module, "gaps_at", plain.states.gaps_at)
+            monkeypatch.setattr(module, "gradients_at", plain.states.gradients_at)
         monkeypatch.setattr(states, "power", plain.states.power)
         for name in ("at_most", "highest", "lies_inside", "turning"):
             monkeypatch.setattr(looks, name, getattr(plain.looks, name))
