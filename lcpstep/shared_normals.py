@@ -9,17 +9,18 @@ out, and no circle of friction comes of it.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import LinearContacts, Scene
 from lcpstep.faults import cause, forget
-from lcpstep.kernels.model import Model
-from lcpstep.kernels.states import gaps_at, gradients_at
 from lcpstep.model import looked_at
 from lcpstep.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from lcpstep.kernels.model import Model
 
 Array = NDArray[np.float64]
 LOOKS = 32  # kept states at which sliding velocities are looked at
@@ -74,6 +75,8 @@ def _of_rest(run: Trajectory) -> float:
 
 def _near(m: Model, t: float, q: Array) -> list[tuple[int, int, Array]]:
     """Contacts at one place with one normal, and that."""
+    from lcpstep.kernels.states import gaps_at, gradients_at
+
     at, here = np.array([t]), q[None]
     N, g = np.asarray(gradients_at(m, at, here)[0]), np.asarray(gaps_at(m, at, here)[0])
     sizes = np.sum(N * N, axis=1)

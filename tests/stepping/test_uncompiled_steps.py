@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lagrangian import scenes
-from lcpstep import Moreau, model, normals, room, shared_normals, sides, simulate
+from lcpstep import Moreau, model, normals, room, sides, simulate
 from lcpstep.kernels import looks, outrun, record, states, surplus, turned
 from lcpstep.stepping import moreau_run
 from tests.marks import slow
@@ -24,7 +24,7 @@ def uncompiled(monkeypatch):
         monkeypatch.setattr(model, "_empty", model._empty.__wrapped__)
         monkeypatch.setattr(room, "gaps_at", plain.states.gaps_at)
         monkeypatch.setattr(normals, "gradients_at", plain.states.gradients_at)
-        for module in (shared_normals, sides):
+        for module in (states, sides):
             monkeypatch.setattr(module, "gaps_at", plain.states.gaps_at)
             monkeypatch.setattr(module, "gradients_at", plain.states.gradients_at)
         monkeypatch.setattr(states, "power", plain.states.power)
