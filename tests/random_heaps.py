@@ -99,16 +99,26 @@ def complaints(seed):
     """What is wrong with the runs of a heap, in words."""
     scene = heap(seed)
     runs = [simulate(scene, method) for method in METHODS]
+    gains = [f"{run.method}: gains energy" for run in runs if np.max(np.diff(energy(run))) > GAINED]
+    return gains + disagreement(scene, runs, NEAR, sensitivity)
+
+
+def disagreement(scene, runs, near, sensitivity):
+    """Which runs have not come to the end, or how far they are from the first there, in words."""
     words = [f"{run.method}: {run.message[:150]}" for run in runs if run.status is not Status.DONE]
-    words += [f"{run.method}: gains energy" for run in runs if np.max(np.diff(energy(run))) > GAINED]
-    if all(run.status is Status.DONE for run in runs):
+    if not words:
         off = [np.max(np.abs(run.q[-1] - runs[0].q[-1])) for run in runs[1:]]
-        if max(off) > NEAR and max(off) > FARTHER * sensitivity(scene, runs[0]):
+        if max(off) > near and max(off) > FARTHER * sensitivity(scene, runs[0]):
             words.append(f"{off} m off")
     return words
 
 
-if __name__ == "__main__":
+def tell(complaints):
+    """Print the complaints of the scenes that the command line asks for."""
     for seed in range(int(sys.argv[1]), int(sys.argv[2])):
         for words in complaints(seed):
             print(seed, words, flush=True)
+
+
+if __name__ == "__main__":
+    tell(complaints)

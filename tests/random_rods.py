@@ -3,14 +3,13 @@
 `python -m tests.random_rods A B` looks at those from A to B: all end, by all methods in one place.
 """
 
-import sys
 from dataclasses import replace
 
 import numpy as np
 
 from lagrangian import Contacts, Coulomb, Joints, LinearSystem, Scene
-from lcpstep import EventDriven, Located, Status, simulate
-from tests.random_heaps import FARTHER, MOVED
+from lcpstep import EventDriven, Located, simulate
+from tests.random_heaps import MOVED, disagreement, tell
 
 HALF, G = 0.5, 9.81
 NEAR = 1e-4  # m
@@ -108,16 +107,8 @@ def sensitivity(scene, true):
 def complaints(seed):
     """What is wrong with the runs of some rods, in words."""
     scene = rods(seed)
-    runs = [simulate(scene, method) for method in METHODS]
-    words = [f"{run.method}: {run.message[:150]}" for run in runs if run.status is not Status.DONE]
-    if not words:
-        off = [np.max(np.abs(run.q[-1] - runs[0].q[-1])) for run in runs[1:]]
-        if max(off) > NEAR and max(off) > FARTHER * sensitivity(scene, runs[0]):
-            words.append(f"{off} m off")
-    return words
+    return disagreement(scene, [simulate(scene, method) for method in METHODS], NEAR, sensitivity)
 
 
 if __name__ == "__main__":
-    for seed in range(int(sys.argv[1]), int(sys.argv[2])):
-        for words in complaints(seed):
-            print(seed, words, flush=True)
+    tell(complaints)

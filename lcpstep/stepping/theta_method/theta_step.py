@@ -212,11 +212,9 @@ def take_back_idle(s: State, c: Rows, n_a: int, idle: int) -> bool:
     """Whether contacts left out do not close by more than places in a step differ; they are active all the same."""
     for k in range(idle):
         i = c.left_out[k]
-        u, size = c.H_t[i], abs(c.H_t[i])
-        for j in range(s.n_q):
-            u += c.H[i * s.n_q + j] * s.next_v[j]
-            size += abs(c.H[i * s.n_q + j]) * (abs(s.next_v[j]) + abs(s.v_free[j]))
-        if u < -ALIKE * size:
+        u = product(c.H, s.next_v, i, s.n_q) + c.H_t[i]
+        terms = size_of_product(c.H, s.next_v, i, s.n_q) + size_of_product(c.H, s.v_free, i, s.n_q)
+        if u < -ALIKE * (terms + abs(c.H_t[i])):
             return False
         c.problem.ids[n_a + k] = i
     s.active = n_a + idle
