@@ -11,7 +11,8 @@ Noise, tables and corners do not come out like that; where nothing is certain no
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -29,6 +30,7 @@ SAME = math.cos(0.3)  # of the angle between (difference, integral) over two int
 STEEPEST = 3.0  # times steeper may a function be over the next shorter interval
 CONVERGING = (4.0, 100.0)  # by how much slopes change less from length to length: 8, or 64 where f'' = 0
 ENOUGH = 3  # intervals that disagree
+SETS = 4  # of parameters that the same functions are looked at with
 NEGLIGIBLE = 1e-3  # of the largest change of a row: what a user may leave out
 ROUNDING = 16 * np.finfo(float).eps
 
@@ -202,7 +204,19 @@ class Known:
         self.parameters: dict[Any, set[bytes]] = {}
         self.more: WeakKeyDictionary[Any, Known] = WeakKeyDictionary()
 
-    def of(self, functions: list[Any]) -> Known:
+    @contextmanager
+    def look(self, functions: Iterable[Any], what: Any, parameters: Any) -> Iterator[bool]:
+        """Whether to look at `what` of these functions with these parameters; noted if nothing was wrong.
+
+        Not for more than a few sets of parameters, for a study has thousands of them.
+        """
+        seen, numbers = self._of(functions).parameters.setdefault(what, set()), parameters.tobytes()
+        new = numbers not in seen and len(seen) < SETS
+        yield new
+        if new:
+            seen.add(numbers)
+
+    def _of(self, functions: Iterable[Any]) -> Known:
         """What is known of these functions together; of ones that cannot be remembered, nothing."""
         known = self
         for f in functions:

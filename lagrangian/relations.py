@@ -24,7 +24,6 @@ from lagrangian.system import LinearSystem
 if TYPE_CHECKING:
     from lagrangian.scene import Scene
 
-ENOUGH = 4  # sets of parameters that the same functions are looked at with
 MOST = 8  # directions among the coordinates; where there are more of these, several at a time
 APART = 0.01  # of the scale: from the state given to the one looked at, where products of coordinates do not vanish
 FASTER = 0.3  # of the scale: the same of the velocities
@@ -49,25 +48,20 @@ def check_derivatives(
     """Compare every derivative that the scene's functions give; ValueError names the first that is wrong.
 
     Once for each set of functions and of parameters near the start of a scene, and once near states of a run: what is
-    forgotten may be 1 in the first. Not for more than a few sets of parameters, for a study has thousands of them.
+    forgotten may be 1 in the first.
 
     prepared : see `Asked`
     """
     functions = [f for f in _functions(scene) if f is not None]
     if not functions:
         return
-    p = np.asarray(scene.p)
-    seen = KNOWN.of(functions).parameters.setdefault((scene.n_q, len(p), run), set())
-    if p.tobytes() in seen or len(seen) >= ENOUGH:
-        return
     ask = Asked(scene, prepared)
-    with np.errstate(all="ignore"):
-        for at in states:
+    with KNOWN.look(functions, (scene.n_q, run), np.asarray(scene.p)) as new, np.errstate(all="ignore"):
+        for at in states if new else ():
             _check_mass(ask, at)
             _check_arguments(ask, at)
             for relation in _relations(ask, at):
                 compare(relation)
-    seen.add(p.tobytes())
 
 
 def check_force_of_time(scene: Scene) -> None:
@@ -78,16 +72,12 @@ def check_force_of_time(scene: Scene) -> None:
     force: Any = scene.system.force
     if not (isinstance(scene.system, LinearSystem) and callable(force)):
         return
-    p = np.asarray(scene.p)
-    seen = KNOWN.of([force]).parameters.setdefault((scene.n_q, len(p)), set())
-    if p.tobytes() in seen or len(seen) >= ENOUGH:
-        return
-    ask, at = Asked(scene, in_python), (scene.t_span[0], np.array(scene.q0), np.array(scene.v0))
-    with np.errstate(all="ignore"):
-        other = (at[0], *_beside(ask, at, 0.0)[1:])
-        name = "system.force (that of a System may depend on q and v)"
-        _check_same(name, "time", ask.evaluated(force, (scene.n_q,)), at, other)
-    seen.add(p.tobytes())
+    with KNOWN.look([force], scene.n_q, np.asarray(scene.p)) as new, np.errstate(all="ignore"):
+        if new:
+            ask, at = Asked(scene, in_python), (scene.t_span[0], np.array(scene.q0), np.array(scene.v0))
+            other = (at[0], *_beside(ask, at, 0.0)[1:])
+            name = "system.force (that of a System may depend on q and v)"
+            _check_same(name, "time", ask.evaluated(force, (scene.n_q,)), at, other)
 
 
 def _functions(scene: Scene) -> list[Any]:

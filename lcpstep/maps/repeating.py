@@ -21,23 +21,19 @@ from lagrangian.derivatives import Known
 TIMES = (np.arange(8) + 0.6180339887498949) / 8.0  # of the period: at none of its simple parts
 APART = 0.02  # of how far a function goes in these: less may be a period that is rounded
 NOTHING = 1e-6  # of the largest number among them
-ENOUGH = 4  # sets of parameters that the same functions are looked at with
 KNOWN = Known()
 
 
 def check_period(scene: Scene) -> None:
-    """ValueError where a function of time is certainly another one a period later. Once for functions and parameters.
+    """ValueError where a function of time is certainly another one a period later.
 
-    Of the same functions with ever other parameters, as diagrams have them, the first few are looked at.
+    Once for functions and parameters.
     """
     found = [x for x in _functions(scene) if callable(x[1])]
-    seen = KNOWN.of([f for _, f, _ in found]).parameters.setdefault((), set())
-    asked = np.append(np.asarray(scene.p), scene.period).tobytes()
-    if asked in seen or len(seen) >= ENOUGH:
-        return
-    for name, f, shape in found:
-        _compare(scene, name, in_python(f, scene, shape), shape)
-    seen.add(asked)
+    parameters = np.append(np.asarray(scene.p), scene.period)
+    with KNOWN.look([f for _, f, _ in found], scene.n_q, parameters) as new:
+        for name, f, shape in found if new else ():
+            _compare(scene, name, in_python(f, scene, shape), shape)
 
 
 def _functions(scene: Scene) -> Iterator[tuple[str, Any, tuple[int, ...]]]:
