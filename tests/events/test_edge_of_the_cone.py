@@ -9,6 +9,7 @@ from lagrangian import Coulomb, Harmonic, LinearContacts, LinearSystem, Scene, S
 from lcpstep import EventDriven, Located, Status, simulate
 
 MU, G0, A, END = 0.5, 10.0, 4.0, 2.0
+AT_REST = -0.2647282330291779
 METHODS = {
     "event-driven": (EventDriven(), 1e-11),
     "loose": (EventDriven(1e-6, 1e-6), 1e-6),
@@ -108,6 +109,26 @@ def test_a_bead_braced_between_two_walls_presses_on_none_of_them_from_outside(na
     run = simulate(Scene(system, [0.0, 0.0], [1.0, 0.0], (0.0, 2.0), contacts=contacts), method)
     assert run.status == Status.DONE
     assert np.min(run.impulse) > -1e-12
+
+
+@pytest.mark.parametrize("copies", [1, 2, 3])
+@pytest.mark.parametrize("name", ["event-driven", "order 2", "order 4"])
+def test_a_bead_stays_between_its_walls_however_often_one_of_them_is_given(name, copies):
+    """Its load leaves the upper wall, whose friction is used up; both together hold it while they brace themselves.
+
+    Motion, by scipy: x'' = f - 10 x + mu |N(t)| to its rest at 0.45114883882035 s.
+    """
+    force = Harmonic([-50.0 / 13.0, 10.0 / 13.0], [0.0, 10.0], omega=1.0)
+    normals = np.array([[0.0, 1.0], *[[0.0, -1.0]] * copies])
+    contacts = LinearContacts(normals, friction=Coulomb(5.0 / 12.0, np.tile([1.0, 0.0], (1 + copies, 1))))
+    system = LinearSystem(np.eye(2), K=np.diag([10.0, 0.0]), force=force)
+    method = METHODS[name][0] if name != "order 4" else Located(1e-3, order=4, max_events=1000)
+    run = simulate(Scene(system, [0.0, 0.0], [-1.0, 0.0], (0.0, 2.0), contacts=contacts), method)
+    assert run.status == Status.DONE
+    at_rest = run.t > 0.4512
+    assert np.max(np.abs(run.v[at_rest])) < 1e-12
+    assert run.q[-1, 0] == pytest.approx(AT_REST, abs=METHODS[name][1])
+    assert len(run.impacts) < 20
 
 
 @pytest.mark.parametrize("beyond", [1e-10, 1e-12, 1e-14, -1e-12])

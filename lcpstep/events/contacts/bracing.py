@@ -18,9 +18,8 @@ from lcpstep.events.rows.accelerations import accelerate_as_held
 from lcpstep.events.rows.contacts import hold_modes
 from lcpstep.events.rows.equations import size_of_acceleration
 from lcpstep.events.rows.held import is_held
-from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.vectors import product
-from lcpstep.pointers import abs, max
+from lcpstep.pointers import abs
 
 MOST = 4  # contacts at rest: of more not every way is tried
 WAYS = 4  # of a contact: it sticks, leans on either edge, or carries nothing
@@ -37,14 +36,14 @@ def braced(s: Rubbing) -> bool:
         if rests(s, c):
             resting += 1
             ways *= WAYS
-    if resting < 2 or resting > MOST or carries(s, -STILL):
+    if resting < 2 or resting > MOST or carries(s):
         return True
     independent = 0  # rows, of the first way, in which all stick
     for way in range(ways):
         choose(s, way)
         held = hold_modes(s.rows)
         independent = max(independent, s.rows.n_held)
-        if held and s.rows.n_held == independent and carries(s, STILL):
+        if held and s.rows.n_held == independent and carries(s):
             return True
     return False
 
@@ -65,20 +64,20 @@ def choose(s: Rubbing, way: int) -> None:
             s.loaded[c] = 0 if one == 3 else 1
 
 
-def carries(s: Rubbing, inside: float) -> bool:
-    """Whether what rests stays at rest by the rows held, with forces so far within the cones, or rounding.
+def carries(s: Rubbing) -> bool:
+    """Whether what rests stays at rest by the rows held, with forces within the cones by more than rounding.
 
-    Normals, too, where forces may be outside by a little: what begins to lean does so with none.
+    At an edge others are looked for that are not: forces that go on outwards would leave it at once.
     """
     accelerate_as_held(s.rows)
-    within, noise = True, force_noise(s) * max(1.0, -inside / NOISE)
+    within, noise = True, force_noise(s)
     for c in range(s.n_c):
         i = s.n_j + c
         T = i + s.n_c
         if rests(s, c):
             within = within and is_still(s, i) and is_still(s, T)
         if s.mode[c] == STICKS and (is_held(s.rows, i) or is_held(s.rows, T)):
-            most = (1.0 - inside) * s.mu_s[c] * s.multiplier[i] + (1.0 + s.mu_s[c]) * noise
+            most = (1.0 - STILL) * s.mu_s[c] * s.multiplier[i] + (1.0 + s.mu_s[c]) * noise
             within = within and s.multiplier[i] >= -noise and abs(s.multiplier[T]) <= most
         elif s.mode[c] != OPEN:
             within = within and s.multiplier[i] >= -noise
