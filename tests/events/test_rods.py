@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
+from tests.marks import slow
 from tests.random_rods import METHODS, rods
 
 
@@ -25,9 +26,12 @@ def test_a_rod_slips_when_it_does_and_not_when_others_are_looked_at(h):
         assert np.max(np.abs(run.q[-1] - true.q[-1])) < 2.0 * tolerance
 
 
-@pytest.mark.parametrize("seed", [2, 3, 17, 25])
+@pytest.mark.parametrize("seed", slow([2, 3, 17, 25, 73, 104, 122], 2, 3, 73))
 def test_ends_at_one_place_do_not_hand_their_load_over_without_end(seed):
-    """Two ends that a joint links touch the floor together: Newton's iteration went to and fro between them."""
+    """Two ends that a joint links touch the floor together: Newton's iteration went to and fro between them.
+
+    Or, of 73, no impulses were found: rows of six ends and their tangents say nearly the same.
+    """
     true = simulate(rods(seed), METHODS[0], keep=[1.0])
     coarse, fine = (simulate(rods(seed), Moreau(h), keep=[1.0]) for h in (1e-3, 1e-4))
     assert coarse.status == fine.status == Status.DONE

@@ -68,7 +68,7 @@ class State:
     R, try_v, try_q, try_f, M, M_start, A, J, pivots    of Newton's iteration, see `implicit`
     active           contacts that take part in the step at hand
     steps, problems, forces, iteration    taken; complementarity problems; evaluations of forces; of Newton
-    moved    by how much more than rounding of q the last iteration has moved it
+    moved    by how much more than rounding of q the last iteration has moved it; 0 where v is alike
     opened   the gap that steps may have opened above a contact which lasts: 0 of steps of one size
     record   what is kept of the motion
 

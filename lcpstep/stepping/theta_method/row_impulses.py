@@ -22,6 +22,7 @@ from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.responses import respond
 from lcpstep.stepping.theta_method.turned_rows import put_rows_on_joints, sweep_out_turned
 
+ALIKE = 1e-8  # relative: velocities that two ways to share a load leave, where both are found by turns
 UNTOLD = 1e-9  # of the terms of a rate: what joints may leave of it where they leave nothing of its row
 
 
@@ -39,7 +40,7 @@ def impulses(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, r
             forget_tiny(c.problem.rate, n_a + c.n_f)
             if not solve(m, s, c, n_a, c.n_f, impact):
                 impact = pose(m, plan, s, c, n_a, t_next, False)
-                if not solve(m, s, c, n_a, c.n_f, impact):
+                if not search(m, s, c, n_a, impact):
                     return LCP_FAILED
         if c.n_j > 0 and loads_nothing(s, c, n_a):
             return LCP_FAILED
@@ -171,6 +172,19 @@ def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool
     return found
 
 
+def search(m: Model, s: State, c: Rows, n_a: int, impact: bool) -> bool:
+    """The same, for seconds if need be: the run would end here.
+
+    Of rows that nearly say the same, as of the ends of links above a floor, few starts lead to the impulses.
+    """
+    if solve(m, s, c, n_a, c.n_f, impact):
+        return True
+    c.problem.work.thorough = True
+    found = solve(m, s, c, n_a, c.n_f, impact)
+    c.problem.work.thorough = False
+    return found
+
+
 def note_sticking(s: State, c: Rows, n_a: int, n_f: int) -> None:
     """Which contacts do not slide at the end of the step, those among them that nothing presses at the moment.
 
@@ -263,7 +277,7 @@ def apply(plan: Plan, s: State, c: Rows, n_k: int) -> bool:
         moved = max(moved, plan.h * abs(total - s.next_v[i]))
         size = max(max(size, abs(total)), max(abs(s.v[i]), CANCELLED * terms))
         s.next_v[i] = total
-    s.moved = max(0.0, moved - RESTING * largest(s.q, 0.0, n_q))
+    s.moved = max(0.0, moved - RESTING * largest(s.q, 0.0, n_q)) if change > ALIKE * size else 0.0
     return change <= CONVERGED * size
 
 

@@ -56,7 +56,7 @@ from lcpstep.stepping.theta_method.row_impulses import (
     take_part,
 )
 
-UNDECIDED = 14  # iterations after which contacts that bear nothing by turns are left out
+UNDECIDED = 14  # iterations after which loads are shared by turns: contacts that bear nothing are left out
 ALIKE = 1e-2  # of a gap velocity's terms: by so much it may close then
 
 
@@ -169,13 +169,13 @@ def step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> in
         if apply(plan, s, c, n_k) or (m.linear and not c.turning):
             break
         s.iteration += 1
+        if s.moved == 0.0 and s.iteration >= (UNDECIDED if c.n_j > 0 else MAX_ITERATIONS):
+            break  # forces that cancel, or loads shared by turns, at places which nothing tells apart
+        if s.iteration >= MAX_ITERATIONS:
+            return NEWTON_FAILED
         if s.iteration >= UNDECIDED and c.n_j > 0:
             idle = leave_out_idle(s, c, n_a, idle)
             n_a = s.active
-        if s.iteration >= MAX_ITERATIONS:
-            if s.moved > 0.0:
-                return NEWTON_FAILED
-            break  # forces that cancel, at places which rounding does not tell apart
     if c.coefficients.two or c.n_f > 1:
         note_sticking(s, c, n_a, c.n_f)
     if idle > 0 and not take_back_idle(s, c, n_a, idle):
