@@ -26,7 +26,7 @@ def test_a_rod_slips_when_it_does_and_not_when_others_are_looked_at(h):
         assert np.max(np.abs(run.q[-1] - true.q[-1])) < 2.0 * tolerance
 
 
-@pytest.mark.parametrize("seed", slow([2, 3, 17, 25, 73, 104, 122], 2, 3, 73))
+@pytest.mark.parametrize("seed", slow([2, 3, 17, 25, 51, 73, 104, 122], 2, 3, 17, 73))
 def test_ends_at_one_place_do_not_hand_their_load_over_without_end(seed):
     """Two ends that a joint links touch the floor together: Newton's iteration went to and fro between them.
 

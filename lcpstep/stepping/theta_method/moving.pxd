@@ -14,7 +14,7 @@ cdef class State:
     cdef object numbers, marks, work
     cdef readonly Py_ssize_t n_q, n_c, n_moving
     cdef public Py_ssize_t active, steps, problems, forces, iteration
-    cdef double moved, opened
+    cdef double changed, moved, opened
     cdef public Record record
     cdef Doubles q, v, force, g, u, impulse
     cdef Indices closed, sticks

@@ -68,7 +68,8 @@ class State:
     R, try_v, try_q, try_f, M, M_start, A, J, pivots    of Newton's iteration, see `implicit`
     active           contacts that take part in the step at hand
     steps, problems, forces, iteration    taken; complementarity problems; evaluations of forces; of Newton
-    moved    by how much more than rounding of q the last iteration has moved it; 0 where v is alike
+    changed  by how much the last iteration has changed v
+    moved    by how much more than rounding of q it has moved q; 0 where two v take turns that are alike
     opened   the gap that steps may have opened above a contact which lasts: 0 of steps of one size
     record   what is kept of the motion
 
@@ -90,7 +91,7 @@ class State:
         self.closed = indices(self.marks)
         self.sticks, self.pivots = indices_after(self.closed, n_c), indices_after(self.closed, 2 * n_c)
         self.active = self.steps = self.problems = self.forces = self.iteration = 0
-        self.moved = self.opened = 0.0
+        self.changed = self.moved = self.opened = 0.0
         self.record: Any = None
         self.work = np.zeros((VECTORS + SQUARES * n_q) * n_q + 2 * n_c)
         self.next_force = doubles(self.work)

@@ -22,7 +22,8 @@ from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.responses import respond
 from lcpstep.stepping.theta_method.turned_rows import put_rows_on_joints, sweep_out_turned
 
-ALIKE = 1e-8  # relative: velocities that two ways to share a load leave, where both are found by turns
+ALIKE = 1e-6  # relative: velocities that two ways to share a load leave, where both are found by turns,
+LESS = 0.5  # which is where they change by no less than this share of the last change
 UNTOLD = 1e-9  # of the terms of a rate: what joints may leave of it where they leave nothing of its row
 
 
@@ -277,7 +278,10 @@ def apply(plan: Plan, s: State, c: Rows, n_k: int) -> bool:
         moved = max(moved, plan.h * abs(total - s.next_v[i]))
         size = max(max(size, abs(total)), max(abs(s.v[i]), CANCELLED * terms))
         s.next_v[i] = total
-    s.moved = max(0.0, moved - RESTING * largest(s.q, 0.0, n_q)) if change > ALIKE * size else 0.0
+    s.moved = max(0.0, moved - RESTING * largest(s.q, 0.0, n_q))
+    if change > LESS * s.changed and change <= ALIKE * size:
+        s.moved = 0.0
+    s.changed = change
     return change <= CONVERGED * size
 
 
