@@ -22,6 +22,7 @@ DIFFERENCE = 1e-3
 REACH = (
     2.125  # of these steps: what differences keep from the ends of a smooth interval, where rates may jump
 )
+FAR = 1e4  # steps from t = 0: times are rounded by more than values are
 BENT, SMOOTH, SHORTENINGS, LOST = 1e-8, 1e-9, 5, 1e-2
 
 
@@ -172,6 +173,7 @@ def difference_step(
         speed = max(speed, abs(v[i]))
     d, before, shorter = min(DIFFERENCE / speed, (high - low) / (2.0 * REACH)), inf, 1.0
     for _ in range(SHORTENINGS):
+        d = kept_by_clock(t, d)
         bent = differences(m, t, middle(t, low, high, d), q, v, shifted, G, rate, even, d)
         helped = bent > LOST or bent <= before * shorter
         if not bent > BENT or not helped:
@@ -179,8 +181,15 @@ def difference_step(
         change = max(pow(SMOOTH / bent, 1.0 / 3.0), DIFFERENCE)
         before, shorter = bent, change * sqrt(change)
         d *= change
+    d = kept_by_clock(t, d)
     differences(m, t, middle(t, low, high, d), q, v, shifted, G, rate, even, d)
     return d
+
+
+def kept_by_clock(t: float, d: float) -> float:
+    """The step by which t + d differs from t: far from t = 0 what times are rounded by is much of a short one."""
+    exact = (t + d) - t
+    return exact if abs(t) > FAR * d and exact > 0.0 else d
 
 
 def middle(t: float, low: float, high: float, d: float) -> float:

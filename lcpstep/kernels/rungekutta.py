@@ -40,6 +40,7 @@ UNLIKE = 0.01  # of the tolerance: what two evaluations at one state may differ 
 UNSEEN = 1e-3  # of the motion within a step: an error by which it is not resolved, however small it is
 FALLS = 0.7  # an error that a shorter step has no less of, beside its length, is rounding
 LATE = 1e4 * RESOLUTION  # of a time: what a field makes of its rounding is no motion, however short the step
+FAR = 1e4  # scans from t = 0: what times are rounded by is no small part of a tolerance
 SHORT = 1e-8  # of the scan: shorter steps resolve any motion
 ROUNDINGS = 16.0  # of the state, in the error of a step
 POLYNOMIALS = 7  # of the dense output, each a number for every component
@@ -105,6 +106,7 @@ class RungeKutta:
         h = min(self.next_step, longest)
         truncated, again, before = h < self.next_step, False, inf
         while True:
+            h = (t + h) - t if abs(t) > FAR * scan and 0.0 < (t + h) - t < longest else h
             good = self.step(t, h)
             self.evaluations += STAGES + 1
             if good and again and not self.repeats(h):
