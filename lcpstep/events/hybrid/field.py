@@ -3,7 +3,7 @@
     F_s = (L2 F1 - L1 F2) / (L2 - L1),    L_i = H_t + H_x F_i         (Filippov's convex combination)
 
 Sliding ends where L1 falls to zero (the motion goes on below) or L2 rises to it (above): two guards of the sliding
-mode. Gradients are differences of fourth order, exact for linear functions.
+mode. Gradients are differences of fourth order, exact for linear functions, over lengths in which these are smooth.
 """
 
 from __future__ import annotations
@@ -18,9 +18,14 @@ from lcpstep.events.hybrid.kinds import DIFFERENCE, EXIT_ABOVE, EXIT_BELOW, NOT_
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.function import Functions
 from lcpstep.kernels.vectors import copy
-from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.pointers import Doubles, abs, after, inf, max
 
 INNER, OUTER = 2.0 / 3.0, -1.0 / 12.0
+# Two difference quotients that differ by no more than this share, or that tell nothing; by how much their lengths are
+# cut, how often; the least step of time, in its roundings
+SMOOTH, LOST = 1e-6, 1e-2
+SHORTER, SHORTENINGS = 0.125, 10
+TICKS = 1024.0
 TINY = 1e-300  # a band is never empty
 VECTORS = 8
 SURFACE = -1  # in place of a guard
@@ -167,20 +172,55 @@ def gradient(m: Machine, mode: int, k: int, t: float, x: Doubles, beside: Double
     """Its derivatives by the state into `slopes`; returns that by time. beside : (n,)  work space."""
     copy(beside, x, m.n)
     for i in range(m.n):
-        d, slope = DIFFERENCE * reach(m, i, x[i]), 0.0
-        for j in range(2):
-            step, weight = (d, INNER) if j == 0 else (2.0 * d, OUTER)
-            beside[i] = x[i] + step
-            up, value = beside[i], watched(m, mode, k, t, beside)
-            beside[i] = x[i] - step
-            slope += 2.0 * (1 + j) * weight * (value - watched(m, mode, k, t, beside)) / (up - beside[i])
-        beside[i], slopes[i] = x[i], slope
-    d, by_time = m.dt, 0.0
-    for j in range(2):
-        step, weight = (d, INNER) if j == 0 else (2.0 * d, OUTER)
-        later = watched(m, mode, k, t + step, x)
-        by_time += weight * (later - watched(m, mode, k, t - step, x)) / d
-    return by_time
+        slopes[i] = slope(m, mode, k, t, x, i, beside)
+    return slope(m, mode, k, t, x, m.n, beside)
+
+
+def slope(m: Machine, mode: int, k: int, t: float, x: Doubles, i: int, beside: Doubles) -> float:
+    """Its derivative by state i, or by time (i = n). beside : (n,)   x, and so again.
+
+    The length of a motion tells nothing of that over which a function bends: an angle grows for ever, and a surface
+    may move for a short part of a span. Where quotients over d and 2 d differ, those over shorter ones are taken; at
+    a kink, where all do, the mean over the longest.
+    """
+    d, shortest = max(m.dt, TICKS * RESOLUTION * abs(t)), 0.0
+    if i < m.n:
+        d, shortest = DIFFERENCE * reach(m, i, x[i]), DIFFERENCE * DIFFERENCE * m.length[i]
+    first, best, least = 0.0, 0.0, inf
+    for cut in range(SHORTENINGS):
+        near = quotient(m, mode, k, t, x, i, beside, d)
+        far = quotient(m, mode, k, t, x, i, beside, 2.0 * d)
+        found, unlike, size = (
+            2.0 * INNER * near + 4.0 * OUTER * far,
+            abs(far - near),
+            max(abs(near), abs(far)),
+        )
+        if not unlike > SMOOTH * size:
+            return found
+        first = found if cut == 0 else first
+        if unlike < least * size:
+            best, least = found, unlike / size
+        elif least <= LOST:  # rounding by now
+            break
+        d *= SHORTER
+        if d < shortest:
+            break
+    return best if least <= LOST else first
+
+
+def quotient(m: Machine, mode: int, k: int, t: float, x: Doubles, i: int, beside: Doubles, d: float) -> float:
+    """Difference quotient over d before and after x in state i, or time (i = n)."""
+    if i == m.n:
+        later, earlier = t + d, t - d
+        up, down = watched(m, mode, k, later, beside), watched(m, mode, k, earlier, beside)
+    else:
+        later, earlier = x[i] + d, x[i] - d
+        beside[i] = later
+        up = watched(m, mode, k, t, beside)
+        beside[i] = earlier
+        down = watched(m, mode, k, t, beside)
+        beside[i] = x[i]
+    return (up - down) / (later - earlier)
 
 
 def band_and_rate(

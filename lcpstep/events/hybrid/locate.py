@@ -9,7 +9,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.hybrid.field import guard
-from lcpstep.events.hybrid.roots import NONE, SAMPLES, convert, first_rise, taylor
+from lcpstep.events.hybrid.roots import DEGREE, NONE, SAMPLES, convert, first_rise, taylor
 from lcpstep.events.hybrid.state import Motion
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.vectors import finite, largest
@@ -17,6 +17,7 @@ from lcpstep.pointers import abs, after, max, min, nan
 
 UNKNOWN = -2  # in place of a guard
 PARTS = 64  # of a step, at most, in which guards are polynomials
+FINEST = 2**14  # the same where one that is none, by a kink, seems to act
 RESOLVED = 1e-10  # difference of guard and polynomial, relative to its largest value
 REFINEMENTS = 8  # of an event's time by repeated steps
 FAR = 0.01  # of a step: the secants have lost the guard
@@ -47,10 +48,17 @@ def find(s: Motion, h: float, share: float) -> tuple[int, float, float, float]:
             if not known:
                 return UNKNOWN, a, 0.0, 0.0
             place, armed = first_action(s, k)
+            if place != NONE and not fits and parts < FINEST:
+                fine = False
+                break
+            if place != NONE and not fits and not is_sampled(s, k, place):
+                continue
             if place != NONE and a + (b - a) * place < at:
                 found, at = k, a + (b - a) * place
                 _, slope, curvature = taylor(s.scan.c, place, s.scan.half)
-                per_step = parts / share
+                per_step = (
+                    parts if fits else min(parts, PARTS)
+                ) / share  # a jump is steep by how fine parts are
                 slope, curvature = slope * per_step, curvature * per_step * per_step
                 s.event_at, s.was_armed = 0.0 if armed else s.band[k], armed
         if not fine:  # the same place again, more finely
@@ -61,7 +69,17 @@ def find(s: Motion, h: float, share: float) -> tuple[int, float, float, float]:
             return found, at, slope, curvature
         arm(s, h, a, b)
         part += 1
+        while part % 2 == 0 and part < parts:
+            part, parts = part // 2, parts // 2
     return found, at, slope, curvature
+
+
+def is_sampled(s: Motion, k: int, place: float) -> bool:
+    """Whether the sample after a root is above the band of guard k, too, where its polynomial is not the guard."""
+    for j in range(DEGREE):
+        if s.scan.points[j] >= place:
+            return s.scan.sample[j] >= -s.band[k]
+    return s.scan.sample[DEGREE] >= -s.band[k]
 
 
 def arm(s: Motion, h: float, a: float, b: float) -> None:

@@ -25,10 +25,11 @@ from lcpstep.kernels.status import (
     TOO_MANY_EVENTS,
 )
 from lcpstep.kernels.vectors import copy
-from lcpstep.pointers import abs, min
+from lcpstep.pointers import abs, max, min
 
 MAX_STALLED = 100  # switches at one instant
 NEVER_LEFT = 10  # how many of them a switch counts for by a guard whose band was not left
+LONGER = 100.0  # than modes that such guards have left lasts one that goes on
 
 
 class Switching(Course):
@@ -124,8 +125,11 @@ def leave(s: Motion, k: int) -> int:
         s.stalled += 1
     elif s.armed[k] == 0 and s.events > 0:
         s.stalled += NEVER_LEFT
-    else:
-        s.stalled = 0
+        s.brief = max(s.brief, t - s.last_switch)
+    elif (
+        t - s.last_switch > LONGER * s.brief
+    ):  # else it may be a turn among guards the bands of some are not left
+        s.stalled, s.brief = 0, 0.0
     copy(s.m.moved, s.y, n)
     if s.m.has_reset[k] != 0:
         s.m.resets.fill(k, t, s.y, s.y, s.m.moved)

@@ -26,7 +26,7 @@ class Motion(RungeKutta):
     now, mode, begun             where it is, and whether guards have been looked at
     culprit                      the guard by which a switch is due, or -1
     steps, events, stalled       taken; switches, those at one instant
-    last_switch                  time of it
+    last_switch, brief           time of it; how long a mode lasted at most that a guard left within its band, of late
     event_at, was_armed          of the event found: the value of its guard, whether that was below its band before
     rate, missed, tried          slope of that guard; its value, less `event_at`, after the step last tried; its size
     armed, band : (guards,)      whether each has been below its band since the mode began; how well it is known
@@ -65,7 +65,7 @@ class Motion(RungeKutta):
         """Begin at time t in a mode with the state y."""
         self.begin(FIRST_STEP * self.longest)
         self.now, self.last_switch, self.mode, self.begun, self.culprit = t, -inf, mode, False, -1
-        self.event_at, self.was_armed = 0.0, False
+        self.event_at, self.was_armed, self.brief = 0.0, False, 0.0
         self.rate = self.missed = self.tried = 0.0
         self.steps, self.events, self.stalled, self.row, self.switches = 0, 0, 0, 0, 0
 
