@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import scenes
+from lagrangian import Guard, HybridScene, HybridSystem, Mode, scenes
 from lcpstep import EventDriven, simulate
 from lcpstep.analysis.derivative import differences
 from lcpstep.analysis.hybrid_variation import monodromy
@@ -51,3 +51,31 @@ def test_sliding_loses_a_dimension():
     assert run.mode[-1] == "stick"
     assert np.linalg.matrix_rank(M, tol=1e-9) == 1
     np.testing.assert_allclose(M[1], 0.0, atol=1e-12)
+
+
+def swinging(t, x, p, out):
+    out[0], out[1] = x[1], -math.sin(x[0])
+
+
+def swinging_faster(t, x, p, out):
+    out[0], out[1] = x[1], -2.0 * math.sin(x[0])
+
+
+def side(t, x, p, out):
+    out[0] = math.sin(x[0])
+
+
+def test_turns_that_an_angle_has_made_are_nothing_to_the_derivative():
+    """Over a share of 1e4 rad a sine tells nothing of its slope."""
+    modes = {
+        "left": Mode(swinging, [Guard(side, "right")]),
+        "right": Mode(swinging_faster, [Guard(side, "left", -1)]),
+    }
+    system, found = HybridSystem(2, modes), []
+    for turns in (0, 100, 10_000):
+        start = [2.0 * math.pi * turns - 0.5, 3.0]
+        run = simulate(HybridScene(system, start, "left", (0.0, 5.0)), METHOD)
+        assert len(run.switches) == 3
+        found.append(monodromy(run))
+    np.testing.assert_allclose(found[1:], [found[0]] * 2, rtol=0, atol=1e-8)
+    assert np.linalg.det(found[0]) == pytest.approx(1.0, abs=1e-8)

@@ -19,14 +19,26 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles
-from lcpstep.events.hybrid.field import INNER, OUTER, Machine, field, guard_gradient, reach, surface_gradient
+from lcpstep.events.hybrid.field import (
+    INNER,
+    LOST,
+    OUTER,
+    SHORTENINGS,
+    SHORTER,
+    SMOOTH,
+    Machine,
+    field,
+    guard_gradient,
+    reach,
+    surface_gradient,
+)
 from lcpstep.events.hybrid.kinds import ARRIVE, NOT_SLIDING
 from lcpstep.events.hybrid.layout import SWITCH_LEAD
 from lcpstep.kernels.flow import derivative_rates, follow
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import DONE, NOT_TRANSVERSAL
 from lcpstep.kernels.vectors import copy
-from lcpstep.pointers import Doubles, abs, after, whole
+from lcpstep.pointers import Doubles, abs, after, inf, max, whole
 
 TOLERANCE = 1e-12  # of the variational flow
 RELATIVE_STEP: float = np.finfo(float).eps ** 0.2 * 0.1  # of the differences of fields and resets
@@ -138,23 +150,50 @@ def variation(s: Tangent, t: float, z: Doubles, out: Doubles) -> None:
     """Rates of the state and of its derivative: F and F_x J."""
     n = s.n_x
     for j in range(n):
-        d = RELATIVE_STEP * reach(s.m, j, z[j])
-        for i in range(n):
-            s.F_x[i * n + j] = 0.0
-        for k in range(2):
-            step, weight = (d, INNER) if k == 0 else (2.0 * d, OUTER)
-            copy(s.x, z, n)
-            above = z[j] + step
-            s.x[j] = above
-            field(s.m, s.mode, t, s.x, s.up)
-            s.x[j] = z[j] - step
-            field(s.m, s.mode, t, s.x, s.down)
-            for i in range(n):
-                s.F_x[i * n + j] += 2.0 * (1 + k) * weight * (s.up[i] - s.down[i]) / (above - s.x[j])
+        column(s, t, z, j)
     copy(s.x, z, n)
     field(s.m, s.mode, t, s.x, s.up)
     copy(out, s.up, n)
     derivative_rates(s.F_x, after(z, n), after(out, n), n)
+
+
+def column(s: Tangent, t: float, z: Doubles, j: int) -> None:
+    """Derivative of the field by state j, into F_x, over a length within which it is smooth, as of `field.slope`."""
+    longest = RELATIVE_STEP * reach(s.m, j, z[j])
+    d, best, least = longest, longest, inf
+    for _ in range(SHORTENINGS):
+        unlike = quotients(s, t, z, j, d)
+        if not unlike > SMOOTH:
+            return
+        if unlike < least:
+            best, least = d, unlike
+        elif least <= LOST:
+            break
+        d *= SHORTER
+    quotients(s, t, z, j, best if least <= LOST else longest)
+
+
+def quotients(s: Tangent, t: float, z: Doubles, j: int, d: float) -> float:
+    """The same by differences over d and 2 d; by what share these differ."""
+    n, size, unlike = s.n_x, 0.0, 0.0
+    for k in range(2):
+        step = d if k == 0 else 2.0 * d
+        copy(s.x, z, n)
+        later, earlier = z[j] + step, z[j] - step
+        s.x[j] = later
+        field(s.m, s.mode, t, s.x, s.up)
+        s.x[j] = earlier
+        field(s.m, s.mode, t, s.x, s.down)
+        for i in range(n):
+            slope = (s.up[i] - s.down[i]) / (later - earlier)
+            size = max(size, abs(slope))
+            if k == 0:
+                s.F_x[i * n + j] = slope
+            else:
+                near = s.F_x[i * n + j]
+                unlike = max(unlike, abs(slope - near))
+                s.F_x[i * n + j] = 2.0 * INNER * near + 4.0 * OUTER * slope
+    return unlike / size if size > 0.0 else 0.0
 
 
 def switch(s: Tangent, lines: Doubles, further: int, moves: bool) -> bool:
