@@ -120,6 +120,8 @@ class Attempts(Control):
                 code = self.halves(t, h, slow)
         self.full = code == BUFFER_FULL and self.event > 0
         self.failed = code != FINISHED
+        if not self.struck and h > 0.0:
+            self.rate = distance(self.s.v, self.begin_v, n) / h
         self.far_q, self.far_v = largest(self.s.q, 0.0, n), largest(self.s.v, 0.0, n)
         return code
 
