@@ -177,7 +177,7 @@ def quotients(s: Tangent, t: float, z: Doubles, j: int, d: float) -> float:
     """The same by differences over d and 2 d; by what share these differ."""
     n, size, unlike = s.n_x, 0.0, 0.0
     for k in range(2):
-        step = d if k == 0 else 2.0 * d
+        step, weight = (d, 2.0 * INNER) if k == 0 else (2.0 * d, 4.0 * OUTER)
         copy(s.x, z, n)
         later, earlier = z[j] + step, z[j] - step
         s.x[j] = later
@@ -185,14 +185,11 @@ def quotients(s: Tangent, t: float, z: Doubles, j: int, d: float) -> float:
         s.x[j] = earlier
         field(s.m, s.mode, t, s.x, s.down)
         for i in range(n):
-            slope = (s.up[i] - s.down[i]) / (later - earlier)
-            size = max(size, abs(slope))
-            if k == 0:
-                s.F_x[i * n + j] = slope
-            else:
-                near = s.F_x[i * n + j]
-                unlike = max(unlike, abs(slope - near))
-                s.F_x[i * n + j] = 2.0 * INNER * near + 4.0 * OUTER * slope
+            share = weight * (s.up[i] - s.down[i]) / (later - earlier)
+            near = s.F_x[i * n + j] / (2.0 * INNER)
+            size = max(size, abs(share / weight))
+            unlike = max(unlike, abs(share / weight - near)) if k > 0 else 0.0
+            s.F_x[i * n + j] = share if k == 0 else s.F_x[i * n + j] + share
     return unlike / size if size > 0.0 else 0.0
 
 
