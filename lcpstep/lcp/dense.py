@@ -9,8 +9,9 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import are_doubles, doubles, indices
+from lcpstep.lcp.balanced import balanced, in_units
 from lcpstep.lcp.enumeration import TINY, enumerate_bases, enumerate_vertices
-from lcpstep.lcp.infeasible import explained, farkas
+from lcpstep.lcp.infeasible import explained, farkas, is_ray
 from lcpstep.lcp.judge import judge
 from lcpstep.lcp.kernel import solve_dense
 from lcpstep.lcp.problem import Ray, Solution, check_finite
@@ -84,10 +85,16 @@ def pivoting(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> 
 
 @cython.cfunc
 def search(W: Any, b: Any, z: Any, w: Any, tol: float, limit: int, work: Workspace, status: int) -> Solution:
-    """The thorough search for a solution, and another method, unless there is a proof that there is none."""
-    if status == RAY and (certificate := farkas(W, b)) is not None:
+    """The same in units of the problem's own, the thorough search, and another method, unless a proof ends it."""
+    if status in (RAY, FAILED) and (certificate := farkas(W, b)) is not None:
         return Solution(z, w, Status.INFEASIBLE, work.iterations, work.residual, "lemke", certificate)
-    n = len(b)
+    n, own, first = len(b), balanced(W, b), None
+    if own is not None:
+        x, y = np.zeros(n), np.empty(n)
+        status = pivot_once(doubles(own.W), doubles(own.b), doubles(x), n, doubles(y), tol, limit, work)
+        first = in_units(own, told(own.W, own.b, x, y, work, status))
+        if first.status in (SOLVED, INFEASIBLE):
+            return first
     z[:] = 0.0
     work.thorough = True
     status = pivot_once(doubles(W), doubles(b), doubles(z), n, doubles(w), tol, limit, work)
@@ -98,7 +105,8 @@ def search(W: Any, b: Any, z: Any, w: Any, tol: float, limit: int, work: Workspa
         other = newton(W, b, np.zeros(n), tol, None)
         if other.solved:
             return other
-    return told(W, b, z, w, work, status)
+    last = told(W, b, z, w, work, status)
+    return first if first is not None and first.status == RAY and last.status == FAILED else last
 
 
 @cython.cfunc
@@ -111,12 +119,14 @@ def told(W: Any, b: Any, z: Any, w: Any, work: Workspace, status: int) -> Soluti
     iterations, residual = work.iterations, work.residual
     if status == INFEASIBLE:
         certificate = array_of(work.ray_direction, n)
-    elif status == RAY:
+    elif status in (RAY, FAILED):
         certificate = farkas(W, b)
         if certificate is not None:
             status = INFEASIBLE
-        else:
+        elif status == RAY:
             certificate = ray(work, n)
+            if not is_ray(W, b, certificate):
+                status, certificate = FAILED, None
     return Solution(z, w, NAMES[status], iterations, residual, "lemke", certificate)
 
 
@@ -130,7 +140,13 @@ def enumeration(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) 
     if status == NOT_FINITE:
         check_finite(W, b)
     found = Solution(z, w, NAMES[status], work.iterations, work.residual, "enumeration")
-    return explained(W, b, found) if status == FAILED else found
+    if status != FAILED:
+        return found
+    if (own := balanced(W, b)) is not None:
+        status = enumerate_all(doubles(own.W), doubles(own.b), doubles(z), n, doubles(w), tol, limit, work)
+        if status == SOLVED:
+            return in_units(own, Solution(z, w, NAMES[status], work.iterations, work.residual, "enumeration"))
+    return explained(W, b, found)
 
 
 def many(

@@ -23,6 +23,15 @@ SMALLEST = 1e-13  # relative complementarity at which rounding takes over
 
 def interior_point(W: Any, b: Any, factors: Factoriser) -> tuple[Any, int]:
     """The last point z > 0, and the number of steps; not judged."""
+    unit = np.ldexp(
+        1.0, -np.frexp(np.max(np.abs(b), initial=0.0))[1]
+    )  # products of huge numbers would overflow
+    z, steps = from_unit(W, unit * b, factors)
+    return z / unit, steps
+
+
+def from_unit(W: Any, b: Any, factors: Factoriser) -> tuple[Any, int]:
+    """The same for a b of size one."""
     n, everywhere = len(b), np.ones(len(b), dtype=bool)
     z, w, scale = start(W, b)
     for step in range(STEPS):
@@ -55,7 +64,7 @@ def start(W: Any, b: Any) -> tuple[Any, Any, float]:
     level = np.max(np.abs(b) / np.sqrt(diagonal)) or 1.0
     z = level / np.sqrt(diagonal)
     w = level * np.sqrt(diagonal)
-    return z, w, float(level) ** 2
+    return z, w, float(level) * float(level)
 
 
 def longest(x: Any, dx: Any, most: float = 1.0) -> float:

@@ -18,13 +18,11 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles
+from lcpstep.lcp.status import FINER, LITTLE, LOST, MERE
 from lcpstep.pointers import Doubles, abs, after, inf, max, min
 from lcpstep.rows import dot, dot_sizes
 
 EPSILON = 2.220446049250313e-16
-ROUNDING = 1e-14  # relative error that may be rounding
-LITTLE = 1e-2  # part of the size of its row that b keeps as a rule
-LOST = 1e-12  # part of the size of its row below which b is lost in rounding
 
 
 def judge(W: Doubles, b: Doubles, z: Doubles, n: int, w: Doubles, s: Doubles) -> float:
@@ -41,7 +39,8 @@ def judge(W: Doubles, b: Doubles, z: Doubles, n: int, w: Doubles, s: Doubles) ->
             worst = max(worst, violation(z[i], relative, share(W, z, n, s, i)))
         else:
             worst = max(worst, -relative)
-    return weighed(worst, b, s, n)
+    worst = weighed(worst, b, s, n)
+    return weighed_by_row(worst, W, b, z, n, w, s) if worst < LITTLE else worst
 
 
 def violation(z: float, relative: float, part: float) -> float:
@@ -59,18 +58,94 @@ def weighed(worst: float, b: Doubles, s: Doubles, n: int) -> float:
     for i in range(n):
         if b[i] != 0.0 and s[i] > abs(b[i]):
             left, some = max(left, abs(b[i]) / s[i]), True
-    if not some or left >= LITTLE or (worst <= ROUNDING and left >= LOST):
+    if not some or left >= LITTLE or (worst <= MERE and left >= LOST):
         return worst
     return min(1.0, worst / left) if left >= LOST else 1.0
+
+
+def weighed_by_row(worst: float, W: Doubles, b: Doubles, z: Doubles, n: int, w: Doubles, s: Doubles) -> float:
+    """The residual by the same rule for each row with little left of b: as if alone with the rows it hangs on.
+
+    Beside rows in which all is well, others may have terms of any size among themselves, their b lost. Two rows
+    hang on each other where they share a z that is among the largest terms of both.
+    """
+    level = 0.0
+    for i in range(n):
+        if b[i] != 0.0 and abs(b[i]) < LITTLE * s[i]:
+            if error_of(W, z, n, w, s, i) > MERE:
+                level = LITTLE
+            elif level == 0.0 and abs(b[i]) < LOST * s[i]:
+                level = LOST
+    while level > 0.0:
+        settled = True
+        hold(W, b, z, n, w, s, level)
+        for i in range(n):
+            w[i] = b[i] + dot(after(W, i * n), z, n)
+        for i in range(n):
+            if s[i] > 0.0 and b[i] != 0.0:
+                settled = False
+                error = error_of(W, z, n, w, s, i)
+                if error > MERE:
+                    worst = max(worst, min(1.0, error / level))
+            s[i] = abs(s[i])
+        if settled:
+            return worst
+        if level <= LOST:
+            return 1.0
+        level = max(FINER * level, LOST)
+    return worst
+
+
+def error_of(W: Doubles, z: Doubles, n: int, w: Doubles, s: Doubles, i: int) -> float:
+    """The violation of row i."""
+    size = abs(s[i])
+    relative = w[i] / size if size > 0.0 else 0.0
+    if z[i] == 0.0 or (z[i] > 0.0 and relative <= 0.0):
+        return max(-relative, 0.0)
+    return violation(z[i], relative, share(W, z, n, s, i))
+
+
+def hold(W: Doubles, b: Doubles, z: Doubles, n: int, held: Doubles, s: Doubles, level: float) -> None:
+    """Change the sign of s in rows of which b is this part, and in those that hang on them.
+
+    `held` is filled with the z that are among the largest terms of such rows.
+    """
+    waiting, turn, changed = 0, 0, True
+    for j in range(n):
+        held[j] = 0.0
+    for i in range(n):
+        if b[i] != 0.0 and abs(b[i]) >= level * s[i]:
+            hold_row(W, z, n, held, s, level, i)
+        elif b[i] != 0.0:
+            waiting += 1
+    while changed and waiting > 0:
+        changed = False
+        for c in range(n):
+            i = c if turn == 0 else n - 1 - c
+            if s[i] > 0.0 and dot_sizes(after(W, i * n), held, n) >= level * s[i]:
+                hold_row(W, z, n, held, s, level, i)
+                changed = True
+                if b[i] != 0.0:
+                    waiting -= 1
+        turn = 1 - turn
+
+
+def hold_row(W: Doubles, z: Doubles, n: int, held: Doubles, s: Doubles, level: float, i: int) -> None:
+    """Mark the row, and its largest terms."""
+    least = level / (n + 1) * s[i]
+    for j in range(n):
+        if abs(W[i * n + j] * z[j]) >= least and z[j] != 0.0:
+            held[j] = z[j]
+    s[i] = -s[i]
 
 
 def share(W: Doubles, z: Doubles, n: int, s: Doubles, i: int) -> float:
     """Largest relative contribution of z_i to a row; one if no row feels it, for then only zero is right."""
     largest, felt = 0.0, False
     for k in range(n):
-        if W[k * n + i] != 0.0 and s[k] > 0.0:
+        if W[k * n + i] != 0.0 and s[k] != 0.0:
             felt = True
-            largest = max(largest, abs(W[k * n + i] * z[i]) / s[k])
+            largest = max(largest, abs(W[k * n + i] * z[i] / s[k]))
     return largest if felt else 1.0
 
 

@@ -28,6 +28,12 @@ class Status(IntEnum):
     FAILED = FAILED
 
 
+# Of the judge:
+MERE = 1e-14  # relative error that may be rounding
+LITTLE = 1e-2  # part of the size of its row that b keeps as a rule
+LOST = 1e-12  # part of the size of its row below which b is lost in rounding
+FINER = 1e-2  # steps between the two in which it is looked for what is left
+
 # Of saddle point problems, A x = r + G^T z:
 ROUNDING = 4 * 2.2e-16  # of the terms that x is what they leave
 NOTHING = 1e-20  # of the largest terms: as small as what proximal steps leave of a z that is zero
