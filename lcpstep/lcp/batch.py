@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lcpstep.lcp.dense import many
-from lcpstep.lcp.problem import as_array, check_finite
+from lcpstep.lcp.problem import as_array, check_finite, check_tolerance
 from lcpstep.lcp.status import ENOUGH, NOT_FINITE, PER_UNKNOWN, SOLVED, TOLERANCE
 
 
@@ -58,12 +58,15 @@ def solve_lcp_batch(
     """
     b = as_array(b, "b", 2)
     W = as_array(W, "W", 2 if np.ndim(W) == 2 else 3)
+    check_tolerance(tol)
     m, n = b.shape
     if W.shape not in ((n, n), (m, n, n)):
         raise ValueError(f"W must be of shape {(m, n, n)} or {(n, n)} to match b, not {W.shape}")
     z = np.zeros((m, n)) if guess is None else as_array(guess, "guess", 2).copy()
     if z.shape != b.shape:
         raise ValueError(f"guess must have the shape of b, {b.shape}, not {z.shape}")
+    if guess is not None and not np.isfinite(z).all():
+        raise ValueError("guess contains NaN or infinity")
     w, residual = np.empty((m, n)), np.zeros(m)
     status, iterations = np.zeros(m, dtype=np.intp), np.zeros(m, dtype=np.intp)
     limit = ENOUGH + PER_UNKNOWN * n if max_iterations is None else max_iterations

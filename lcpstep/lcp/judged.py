@@ -25,9 +25,10 @@ def residual(W: Any, b: Any, z: Any) -> float:
     The relative natural-map residual of `judge`: zero exactly at a solution, about 1e-16 for an answer
     as good as rounding allows, infinite where W z + b overflows or is not a number.
     """
+    b, z = (np.array(a, dtype=float, order="C") for a in (b, z))
     if hasattr(W, "tocsc"):
         return _sparse(W, b, z)
-    W, b, z = (np.array(a, dtype=float, order="C") for a in (W, b, z))
+    W = np.array(W, dtype=float, order="C")
     return judge_dense(W, b, z)
 
 
@@ -40,7 +41,6 @@ def _sparse(W: Any, b: Any, z: Any) -> float:
     relative = np.divide(w, s, out=np.zeros_like(s), where=s > 0.0)
     doubtful = (z < 0.0) | ((z > 0.0) & (relative > EPSILON))
     parts = shares(W, z, s) if doubtful.any() else np.ones_like(z)
-    z, b = (np.array(a, dtype=float, order="C") for a in (z, b))
     worst = judge_terms(z, relative, parts, b, s)
     return weighed_by_row(worst, W, b, z, relative, parts, s) if worst < LITTLE else worst
 

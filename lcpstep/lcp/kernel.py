@@ -41,6 +41,7 @@ STARTS, FEWEST_STARTS = 12, 2  # times that Lemke's method is started
 STRIDE = 7919  # a prime that scatters them
 PER_SQUARE, THOROUGH = 25, 3_000_000_000  # the same of a thorough search, times n^2, and at most this by n^3
 PATIENT = 70_000_000_000_000  # or this by n^5: seconds where a search has a chance, up to a hundred unknowns
+LONGEST = 10_000_000_000  # pivots times n^2 after which it ends whatever is left: some ten seconds
 MULTIPLIER, MODULUS = (
     48271,
     2147483647,
@@ -117,7 +118,7 @@ def pivot_on(
             granted += SPREADING * n if SPREADING * n < MOST else MOST
         if ended == SOLVED and exchange_indices(W, b, z, n, strict, granted, work) == SOLVED:
             return SOLVED
-        if work.best_residual < tolerance:
+        if work.best_residual < tolerance or (attempt >= STARTS and work.iterations * n * n > LONGEST):
             break
         if attempt == 0:
             status = ended

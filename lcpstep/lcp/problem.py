@@ -133,6 +133,12 @@ def check_finite(W: Any, b: Any) -> None:
             raise ValueError(f"{name} contains NaN or infinity")
 
 
+def check_tolerance(tol: float) -> None:
+    """ValueError unless an answer can be within this tolerance."""
+    if not tol >= 0.0:
+        raise ValueError(f"tol must be a number >= 0, not {tol!r}")
+
+
 def as_guess(guess: Any, n: int) -> Any:
     """A starting point: a fresh (n,) array from an array or a Solution, zeros from None."""
     if guess is None:

@@ -137,7 +137,7 @@ def call_solver(
 
     options = dict(TIGHT.get(name, {}) if options is None else options)
     if max_iterations is not None and name in ITERATIONS:
-        options[ITERATIONS[name]] = max_iterations
+        options[ITERATIONS[name]] = max(max_iterations, 1)  # none at all is an error of theirs
     if name in NEEDS_DEFINITE:
         P = P + DEFINITE * np.eye(len(q))
     if name not in qpsolvers.sparse_solvers:

@@ -118,7 +118,25 @@ def test_batch_names_bad_arguments():
         solve_lcp_batch(np.full((2, 2, 2), np.nan), np.ones((2, 2)))
     with pytest.raises(ValueError, match=r"^guess "):
         solve_lcp_batch(np.ones((2, 2, 2)), np.ones((2, 2)), guess=np.ones(2))
+    with pytest.raises(ValueError, match=r"^guess "):
+        solve_lcp_batch(np.ones((2, 2, 2)), np.ones((2, 2)), guess=np.full((2, 2), np.nan))
     assert solve_lcp_batch(np.ones((0, 3, 3)), np.ones((0, 3))).z.shape == (0, 3)
+
+
+@pytest.mark.parametrize("tol", [-1.0, np.nan])
+def test_tolerances_that_nothing_can_meet_are_named(tol):
+    with pytest.raises(ValueError, match=r"^tol "):
+        solve_lcp(W, b, tol=tol)
+    with pytest.raises(ValueError, match=r"^tol "):
+        solve_lcp_batch(W, b[None], tol=tol)
+
+
+def test_lists_are_judged_beside_a_sparse_matrix():
+    assert residual(sp.csr_array(W), list(b), [0.4, 0.2]) == residual(W, b, [0.4, 0.2])
+
+
+def test_a_quadratic_programme_without_iterations_is_no_error_of_its_solver():
+    assert solve_lcp(W, b, "qp", max_iterations=0).method == "qp:osqp"
 
 
 def test_overflow_is_not_called_solved():

@@ -133,3 +133,16 @@ def test_numbers_near_the_smallest_that_there_are_raise_nothing(size):
         solution = solve_lcp(W, b, method=method)
         assert np.all(solution.z >= 0.0)
         assert np.max(np.abs(solution.z)) <= 10.0 * size
+
+
+@pytest.mark.slow
+def test_long_paths_count_against_the_time_of_a_search():
+    """Triangular with large entries: some hundred pivots from each start, where other matrices need a dozen."""
+    n, rng = 100, np.random.default_rng(18)
+    W = np.triu(3.0 * rng.normal(size=(n, n)), 1) + np.diag(rng.uniform(0.1, 2, n))
+    order = rng.permutation(n)
+    W = W[np.ix_(order, order)]
+    z = rng.uniform(0.1, 1.0, n) * (rng.random(n) < 0.5)
+    b = rng.uniform(0.1, 1.0, n) * (z == 0.0) * (rng.random(n) < 0.8) - W @ z
+    solution = solve_lcp(W, b)
+    assert solution.solved or solution.iterations < 1.2e6  # 2.9e6, half a minute and more
