@@ -30,12 +30,13 @@ import numpy as np
 from lcpstep.lcp.attempt import Attempt
 from lcpstep.lcp.factor import Singular, Solve, banded, factoriser, narrow_order
 from lcpstep.lcp.interior import BACK_OFF, SMALLEST, STEPS, longest
-from lcpstep.lcp.newton import PATIENCE, PROXIMAL, REFINEMENTS
+from lcpstep.lcp.newton import PATIENCE, PROXIMAL
 from lcpstep.lcp.part import Part
 from lcpstep.lcp.sparse_rows import SparseRows
 from lcpstep.lcp.status import TOLERANCE
 
 PENALTY = (1e-11, 1e-9)  # d where x is found first: its rounding and its error fall alike in a refinement
+REFINEMENTS = 50  # at most; each at least halves the error, or is the last
 REFINED = 4e-16  # relative residual below which another refinement is idle
 
 

@@ -295,3 +295,20 @@ def test_a_curved_contact_of_a_sparse_system_takes_the_dense_steps():
     curved = Scene(ball, np.ones(3), np.zeros(3), (0.0, 1.0), Contacts(1, gap, jacobian))
     a, b = (simulate(x, Moreau(1e-3)) for x in (flat, curved))
     np.testing.assert_allclose(a.q, b.q, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize(("n", "decades"), [(300, 5.0), (1000, 4.0), (2000, 4.0)])
+def test_columns_of_ever_heavier_bodies_rest_on_the_lightest(n, decades):
+    """A proximal step leaves a fifth or a quarter of the error here: there are as many as that takes."""
+    m = np.logspace(-decades, decades, n)
+    G = sparse.diags_array([np.ones(n), -np.ones(n - 1)], offsets=[0, -1])
+    contacts = LinearContacts(G, restitution=0.5)
+    scene = Scene(
+        LinearSystem(sparse.diags_array(m), force=-9.81 * m), np.zeros(n), np.zeros(n), (0.0, 0.02), contacts
+    )
+    run = simulate(scene, Moreau(h=1e-3))
+    weights = 9.81e-3 * np.cumsum(m[::-1])[::-1]
+    assert run.status.name == "DONE"
+    assert np.max(np.abs(run.impulse[1:] / weights - 1.0)) < 1e-12
+    assert np.max(np.abs(run.v)) < 1e-15
+    assert np.max(run.penetration) < 1e-18
