@@ -32,9 +32,9 @@ from lcpstep.lcp.status import NOTHING, ROUNDING, TOLERANCE
 from lcpstep.stepping.sparse_path import BACKWARDS, FORWARDS, GOLDEN, OPEN, SIGN, STICK, Path
 from lcpstep.stepping.steps import CONTRADICTION, largest
 
-PROXIMAL = 1e-10  # d, relative to the mobility of a row
+PROXIMAL = 1e-10, 1e-13  # d, relative to the mobility of a row; the second for heavy bodies on light ones
 SMALLEST = 1e-300
-REFINEMENTS = 20
+REFINEMENTS, HEADWAY = 100, 0.9  # at most; the part of an error that may be left if another follows
 CENTRES = 20  # proximal points
 
 
@@ -108,7 +108,7 @@ class Coupled:
             np.concatenate([rows, across, diagonal, normal + self.n_c]),
             np.concatenate([columns, self.R.indices, diagonal, normal]), total,
         )  # fmt: skip
-        self.kept: tuple[bytes, Solve] | None = None
+        self.kept: tuple[tuple[float, bytes], Solve] | None = None
         self.turn(J.data, J.data)
 
     def turn(self, J: Any, D: Any) -> None:
@@ -122,8 +122,12 @@ class Coupled:
         weighted = np.abs(self.R.data * forces) / self.diagonal[self.R.indices]
         self.mobility = np.bincount(self.row, weights=weighted, minlength=self.n_r)
         self.mobility[self.mobility == 0.0] = 1.0
-        self.proximal = PROXIMAL * self.mobility
-        self.kept = None
+        self.part, self.kept = PROXIMAL[0], None
+
+    @property
+    def proximal(self) -> Any:
+        """The proximal diagonal (n_r,)."""
+        return self.part * self.mobility
 
     def of_joints(self) -> Any:
         """Contacts (n_c,) whose normals the joints hold already: a velocity that these leave moves all other gaps.
@@ -153,6 +157,11 @@ class Coupled:
 
     def attempts(self, problem: Problem, modes: Any, p: Any) -> Iterator[Point]:
         """Answers for one set of modes after another."""
+        for self.part in PROXIMAL:
+            yield from self.attempts_by(problem, modes, p)
+
+    def attempts_by(self, problem: Problem, modes: Any, p: Any) -> Iterator[Point]:
+        """The same with one proximal diagonal."""
         point: Point | None = None
         guess = modes
         try:
@@ -204,7 +213,7 @@ class Coupled:
 
     def factor(self, problem: Problem, modes: Any) -> Solve:
         """Solver for the modes; the one used last is kept."""
-        key = b"".join(x.tobytes() for x in (modes, problem.rough, problem.mu))
+        key = self.part, b"".join(x.tobytes() for x in (modes, problem.rough, problem.mu))
         if self.kept is None or self.kept[0] != key:
             held = self.held(problem, modes)
             diagonal = np.where(held, self.proximal, 1.0)
@@ -224,7 +233,7 @@ class Coupled:
         proximal = 0.0 if centre is None else self.proximal
         u, before = np.append(np.zeros(n), np.where(held, p, 0.0)), np.inf
         u[n:][tangents][slides] = -(slide * u[n:][normals])[slides]
-        left = np.append(-(self.L @ u), np.where(held, -problem.b, 0.0))
+        left, scale = np.append(-(self.L @ u), np.where(held, -problem.b, 0.0)), 0.0
         for _ in range(REFINEMENTS):
             u = u + solve(left)
             u[n:][tangents][slides] = -(slide * u[n:][normals])[slides]
@@ -232,8 +241,9 @@ class Coupled:
             drawn = rates + proximal * (u[n:] - (p if centre is None else centre))
             left = np.append(-(self.L @ u), np.where(held, -drawn, 0.0))
             size_x, sizes, noise = self.sizes(problem, u)
-            error = max(largest(left[:n] / size_x), largest(relative(drawn, sizes, noise)[held]))
-            if not REFINED < error < 0.5 * before:
+            scale = scale or largest(problem.size + self.abs_R @ np.abs(u[:n])) + SMALLEST
+            error = max(largest(left[:n] / size_x), largest(drawn[held]) / scale)
+            if not REFINED < error < HEADWAY * before:
                 break
             before = error
         away = relative(rates, sizes, noise)

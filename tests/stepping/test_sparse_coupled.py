@@ -275,3 +275,21 @@ def test_a_pattern_with_a_column_too_many_is_named():
     joints = Joints(1, nothing, nothing, pattern=[[0], [2]])
     with pytest.raises(ValueError, match=r"joints.pattern: expected columns below 2, got 2"):
         Scene(LinearSystem(sparse.eye_array(2)), [0.0, 0.0], [0.0, 0.0], (0.0, 1.0), joints=joints)
+
+
+@pytest.mark.parametrize(("n", "decades"), [(110, 0.0), (110, 4.0), (110, 5.0), (1000, 3.0)])
+@pytest.mark.parametrize("pull", [2.0, 6.0])
+def test_columns_of_ever_heavier_bodies_stick_and_slide_on_the_lightest(n, decades, pull):
+    """Pulled aside by 2 m/s^2 they stick; by 6 m/s^2, beyond mu g, the lowest slides with all above."""
+    m, mu, h = np.logspace(-decades, decades, n), 0.5, 1e-3
+    rows, none = sparse.diags_array([np.ones(n), -np.ones(n - 1)], offsets=[0, -1]), sparse.csr_array((n, n))
+    G, T = sparse.hstack([rows, none]).tocsr(), sparse.hstack([none, rows]).tocsr()
+    system = LinearSystem(sparse.diags_array(np.tile(m, 2)), force=np.append(-9.81 * m, pull * m))
+    contacts = LinearContacts(G, friction=Coulomb(mu, T))
+    run = simulate(Scene(system, np.zeros(2 * n), np.zeros(2 * n), (0.0, 0.02), contacts), Moreau(h=h))
+    borne, forward = h * np.cumsum(m[::-1])[::-1], max(pull - mu * 9.81, 0.0)
+    assert run.status == Status.DONE
+    assert np.max(np.abs(run.impulse[1:] / (9.81 * borne) - 1.0)) < 3e-13
+    assert np.max(np.abs(run.friction_impulse[1:] / ((forward - pull) * borne) - 1.0)) < 3e-13
+    assert np.max(np.abs(run.v[:, :n])) == 0.0
+    assert np.max(np.abs(run.v[:, n:] - forward * run.t[:, None])) < 1e-7
