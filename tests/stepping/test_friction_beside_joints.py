@@ -100,3 +100,21 @@ def test_an_obstacle_that_pushes_against_joints_ends_the_run(made, rough):
     run = simulate(scene, Moreau(1e-2))
     assert run.status == Status.LCP_FAILED
     assert "obstacle of contact 0 closes in" in run.message or "contacts [0]" in run.message
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_friction_with_nothing_to_hold_does_not_make_joints_contradict_each_other(restitution):
+    """Bodies tied side by side fall on a floor one after another: impulses of friction and joints are rounding."""
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        n = rng.integers(3, 6)
+        m, y, upright = 10.0 ** rng.uniform(-1, 1, n), rng.uniform(0, 0.03, n), np.eye(n)
+        G, T = np.kron(upright, [[0.0, 1.0]]), np.kron(upright, [[1.0, 0.0]])
+        scene = Scene(
+            LinearSystem(np.diag(np.repeat(m, 2)), force=np.kron(m, [0.0, -9.81])),
+            np.kron(y, [0.0, 1.0]), np.zeros(2 * n), (0.0, 0.15),
+            LinearContacts(G, restitution=restitution, friction=Coulomb(0.4, T)), LinearJoints(T[:-1] - T[1:]),
+        )  # fmt: skip
+        run = simulate(scene, Moreau(h=1e-3))
+        assert run.status == Status.DONE
+        assert np.max(np.abs(run.v[:, ::2])) < 1e-15

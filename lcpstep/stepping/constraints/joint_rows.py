@@ -30,6 +30,8 @@ STALLED = 1e4  # of the slack: how much rounding in the gaps' own arithmetic may
 NOTHING = 1e-12  # of the terms of a number: what is left of one
 NEARLY = 1e-3  # of a mobility: what joints leave of it with digits enough
 LOST = 3e-7  # of a row: what joints leave of it that has no digits for velocities
+GRAIN = 1e-15 / CONTRADICTION  # of the largest impulse: to which the others are known
+SMALLEST = 1e-290  # next to it numbers have all their digits
 REFINEMENTS = 20
 SWEEPS = 30
 VECTORS = 6
@@ -275,18 +277,21 @@ def joints_hold(
 
     Redundant joints agree on the joints' positions only, so what the joints turn by in the step is granted. What
     the impulses p of all n rows change a velocity by, X^T p, counts to its size: with unequal masses it is much more
-    than the rest.
+    than the rest. Impulses are known to the rounding of the largest: where friction has nothing to hold, its own are
+    that rounding, and so are the velocities; from step to step they shrink to numbers without digits.
     """
-    hold = True
+    hold, most = True, GRAIN * largest(p, 0.0, n)
     for j in range(n_j):
         rate, size, turned = J_t[j], abs(J_t[j]), 0.0
         for i in range(n_q):
             row = J[j * n_q + i]
             rate += row * v_next[i]
-            speed = max(max(abs(v_next[i]), abs(v[i])), abs(v_free[i]))
+            speed = max(max(max(abs(v_next[i]), abs(v[i])), abs(v_free[i])), SMALLEST)
+            steepest = 0.0
             for k in range(n):
+                steepest = max(steepest, abs(X[k * n_q + i]))
                 speed = max(speed, abs(X[k * n_q + i] * p[k]))
-            size += abs(row) * speed
+            size += abs(row) * max(speed, steepest * most)
             turned += abs(row - J_start[j * n_q + i]) * speed
         failed[j] = 0 if abs(rate) <= CONTRADICTION * size + turning * turned else 1
         hold = hold and failed[j] == 0
