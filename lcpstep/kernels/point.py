@@ -9,7 +9,8 @@ import numpy as np
 
 from lcpstep.arrays import doubles
 from lcpstep.kernels.acceleration import divide_by_mass, free_acceleration
-from lcpstep.kernels.dynamics import bias, gap_rates
+from lcpstep.kernels.biases import bias
+from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.vectors import copy, product
 from lcpstep.pointers import after, inf
 

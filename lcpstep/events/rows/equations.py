@@ -12,7 +12,8 @@ import cython
 
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import divide_by_mass, response
-from lcpstep.kernels.dynamics import bias, gap_rates, gaps, total_force
+from lcpstep.kernels.biases import bias
+from lcpstep.kernels.dynamics import gap_rates, gaps, total_force
 from lcpstep.kernels.linear import uncouple
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import copy, filled, product_at

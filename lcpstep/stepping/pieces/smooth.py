@@ -15,7 +15,8 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.acceleration import factor_mass, response
-from lcpstep.kernels.dynamics import bias, external_force, gap_rates, gaps, total_force
+from lcpstep.kernels.biases import bias
+from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, total_force
 from lcpstep.kernels.linear import grow_factor, invert_matrix, solve_factored, uncouple
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, copy, filled, product, product_at, product_between

@@ -279,7 +279,7 @@ def apply(plan: Plan, s: State, c: Rows, n_k: int) -> bool:
         size = max(max(size, abs(total)), max(abs(s.v[i]), CANCELLED * terms))
         s.next_v[i] = total
     s.moved = max(0.0, moved - RESTING * largest(s.q, 0.0, n_q))
-    if change > LESS * s.changed and change <= ALIKE * size:
+    if c.n_j > 0 and change > LESS * s.changed and change <= ALIKE * size:
         s.moved = 0.0
     s.changed = change
     return change <= CONVERGED * size
