@@ -69,12 +69,13 @@ def weighed_by_row(worst: float, W: Doubles, b: Doubles, z: Doubles, n: int, w: 
     Beside rows in which all is well, others may have terms of any size among themselves, their b lost. Two rows
     hang on each other where they share a z that is among the largest terms of both.
     """
-    level = 0.0
+    level, wrong = 0.0, worst > MERE
     for i in range(n):
         if b[i] != 0.0 and abs(b[i]) < LITTLE * s[i]:
-            if error_of(W, z, n, w, s, i) > MERE:
+            if wrong and error_of(W, z, n, w, s, i) > MERE:
                 level = LITTLE
-            elif level == 0.0 and abs(b[i]) < LOST * s[i]:
+                break
+            if abs(b[i]) < LOST * s[i]:
                 level = LOST
     while level > 0.0:
         settled = True
@@ -84,7 +85,7 @@ def weighed_by_row(worst: float, W: Doubles, b: Doubles, z: Doubles, n: int, w: 
         for i in range(n):
             if s[i] > 0.0 and b[i] != 0.0:
                 settled = False
-                error = error_of(W, z, n, w, s, i)
+                error = error_of(W, z, n, w, s, i) if wrong else 0.0
                 if error > MERE:
                     worst = max(worst, min(1.0, error / level))
             s[i] = abs(s[i])
@@ -132,10 +133,9 @@ def hold(W: Doubles, b: Doubles, z: Doubles, n: int, held: Doubles, s: Doubles, 
 
 def hold_row(W: Doubles, z: Doubles, n: int, held: Doubles, s: Doubles, level: float, i: int) -> None:
     """Mark the row, and its largest terms."""
-    least = level / (n + 1) * s[i]
-    for j in range(n):
-        if abs(W[i * n + j] * z[j]) >= least and z[j] != 0.0:
-            held[j] = z[j]
+    row, least = after(W, i * n), level / (n + 1) * s[i]
+    for j in range(n):  # without a branch, so that several are looked at at once
+        held[j] = z[j] if abs(row[j] * z[j]) >= least else held[j]
     s[i] = -s[i]
 
 
