@@ -44,9 +44,8 @@ def balanced(W: Any, b: Any) -> Balanced | None:
         return None
     with np.errstate(over="ignore", under="ignore"):
         V, q = np.ldexp(np.ldexp(W, r[:, None]), c), np.ldexp(b, r)
-        exact = np.array_equal(np.ldexp(np.ldexp(V, -c), -r[:, None]), W) and np.array_equal(
-            np.ldexp(q, -r), b
-        )
+        exact = np.array_equal(np.ldexp(np.ldexp(V, -c), -r[:, None]), W)
+        exact = exact and np.array_equal(np.ldexp(q, -r), b)
     return Balanced(V, q, r, c) if exact else None
 
 

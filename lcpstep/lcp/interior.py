@@ -23,9 +23,8 @@ SMALLEST = 1e-13  # relative complementarity at which rounding takes over
 
 def interior_point(W: Any, b: Any, factors: Factoriser) -> tuple[Any, int]:
     """The last point z > 0, and the number of steps; not judged."""
-    unit = np.ldexp(
-        1.0, -np.frexp(np.max(np.abs(b), initial=0.0))[1]
-    )  # products of huge numbers would overflow
+    # Products of huge numbers would overflow
+    unit = np.ldexp(1.0, -np.frexp(np.max(np.abs(b), initial=0.0))[1])
     z, steps = from_unit(W, unit * b, factors)
     return z / unit, steps
 

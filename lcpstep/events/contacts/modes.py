@@ -200,9 +200,14 @@ def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
 
 
 def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
-    """Whether the contact of unknown a, which carries no force, accelerates away."""
-    known = NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s.rows, a, n_a)]
-    return acceleration(s, a, n_a, n_f) > known
+    """Whether the contact of unknown a, which carries no force, accelerates away.
+
+    By more than the rounding of forces that hang together: friction that has nothing to hold is that of the largest.
+    """
+    alpha, doubt = acceleration(s, a, n_a, n_f), s.doubt[row_of(s.rows, a, n_a)]
+    if alpha <= NOISE * size_of_terms(s, a, n_a, n_f) + doubt:
+        return False
+    return alpha > NOISE * size_of_coupled(s, a, n_a, n_f) + doubt
 
 
 def size_of_terms(s: Rubbing, a: int, n_a: int, n_f: int) -> float:

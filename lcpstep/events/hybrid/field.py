@@ -190,11 +190,8 @@ def slope(m: Machine, mode: int, k: int, t: float, x: Doubles, i: int, beside: D
     for cut in range(SHORTENINGS):
         near = quotient(m, mode, k, t, x, i, beside, d)
         far = quotient(m, mode, k, t, x, i, beside, 2.0 * d)
-        found, unlike, size = (
-            2.0 * INNER * near + 4.0 * OUTER * far,
-            abs(far - near),
-            max(abs(near), abs(far)),
-        )
+        found = 2.0 * INNER * near + 4.0 * OUTER * far
+        unlike, size = abs(far - near), max(abs(near), abs(far))
         if not unlike > SMOOTH * size:
             return found
         first = found if cut == 0 else first

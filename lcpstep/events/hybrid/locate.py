@@ -56,9 +56,8 @@ def find(s: Motion, h: float, share: float) -> tuple[int, float, float, float]:
             if place != NONE and a + (b - a) * place < at:
                 found, at = k, a + (b - a) * place
                 _, slope, curvature = taylor(s.scan.c, place, s.scan.half)
-                per_step = (
-                    parts if fits else min(parts, PARTS)
-                ) / share  # a jump is steep by how fine parts are
+                # A jump is as steep as the parts are fine
+                per_step = (parts if fits else min(parts, PARTS)) / share
                 slope, curvature = slope * per_step, curvature * per_step * per_step
                 s.event_at, s.was_armed = 0.0 if armed else s.band[k], armed
         if not fine:  # the same place again, more finely

@@ -126,9 +126,7 @@ def leave(s: Motion, k: int) -> int:
     elif s.armed[k] == 0 and s.events > 0:
         s.stalled += NEVER_LEFT
         s.brief = max(s.brief, t - s.last_switch)
-    elif (
-        t - s.last_switch > LONGER * s.brief
-    ):  # else it may be a turn among guards the bands of some are not left
+    elif t - s.last_switch > LONGER * s.brief:  # no turn among guards the bands of some of which are not left
         s.stalled, s.brief = 0, 0.0
     copy(s.m.moved, s.y, n)
     if s.m.has_reset[k] != 0:
