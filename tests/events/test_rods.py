@@ -3,9 +3,12 @@
 import numpy as np
 import pytest
 
+from lagrangian import Contacts, Coulomb, Joints, LinearSystem, Scene
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
 from tests.marks import slow
-from tests.random_rods import METHODS, rods
+from tests.random_rods import METHODS, G, gaps, link_rows, links, normals, rods, tangents
+
+MU, PULL = 0.3, 10.0  # N/s
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -37,3 +40,32 @@ def test_ends_at_one_place_do_not_hand_their_load_over_without_end(seed):
     assert coarse.status == fine.status == Status.DONE
     errors = [np.max(np.abs(run.q[-1] - true.q[-1])) for run in (coarse, fine)]
     assert errors[1] < max(0.2 * errors[0], 1e-3)
+
+
+def pulled(t, q, v, p, out):
+    """Rods of 1 kg, the first of them pulled along the floor."""
+    out[:] = 0.0
+    out[1::3] = -G
+    out[0] = PULL * t
+
+
+@pytest.mark.parametrize("method", [*METHODS, Moreau(1e-3)], ids=["events", "2", "4", "tolerance", "moreau"])
+@pytest.mark.parametrize("n", [1, 2, 3])
+def test_flat_rods_that_are_linked_slip_when_the_friction_of_all_their_ends_is_used_up(n, method):
+    """At t = mu n g / pull, then x = pull (t - ..)^3 / 6 n; of five ends and more the first held for ever.
+
+    Two ends lie at each joint, whose forces are known in sum alone: those that bear none of the forces found were
+    held first, took the load of all, left their cones by that, and were not watched any more.
+    """
+    q0 = np.column_stack([0.5 + np.arange(n), np.zeros((n, 2))]).ravel()
+    slips = MU * n * G / PULL
+    scene = Scene(
+        LinearSystem(np.diag(np.tile([1.0, 1.0, 1.0 / 12.0], n)), force=pulled),
+        q0, np.zeros(3 * n), (0.0, slips + 0.5),
+        contacts=Contacts(2 * n, gaps, normals, friction=Coulomb(MU, tangents)),
+        joints=Joints(2 * (n - 1), links, link_rows) if n > 1 else None,
+    )  # fmt: skip
+    run = simulate(scene, method)
+    assert run.status == Status.DONE
+    error = 1e-3 if isinstance(method, Moreau) else 1e-6
+    np.testing.assert_allclose(run.q[-1] - q0, np.tile([PULL * 0.5**3 / (6.0 * n), 0.0, 0.0], n), atol=error)

@@ -35,15 +35,18 @@ def braced(s: Rubbing) -> bool:
     for c in range(s.n_c):
         if rests(s, c):
             resting += 1
-            ways *= WAYS
-    if resting < 2 or resting > MOST or carries(s):
+            ways = ways * WAYS if resting <= MOST else 0
+    if resting < 2 or carries(s):
         return True
-    independent = 0  # rows, of the first way, in which all stick
+    choose(s, 0)
+    hold_modes(s.rows)
+    independent = s.rows.n_held  # rows, where all stick
+    choose_as_found(s)
+    if hold_modes(s.rows) and s.rows.n_held == independent and carries(s):
+        return True
     for way in range(ways):
         choose(s, way)
-        held = hold_modes(s.rows)
-        independent = max(independent, s.rows.n_held)
-        if held and s.rows.n_held == independent and carries(s):
+        if hold_modes(s.rows) and s.rows.n_held == independent and carries(s):
             return True
     return False
 
@@ -51,6 +54,18 @@ def braced(s: Rubbing) -> bool:
 def rests(s: Rubbing, c: int) -> bool:
     """Whether contact c is pressed and does not slide, as the modes were found."""
     return s.new_mode[c] == STICKS or s.new_mode[c] == LEANS
+
+
+def choose_as_found(s: Rubbing) -> None:
+    """Modes of what rests by the forces found: what bears none of them carries nothing.
+
+    The solver finds them on independent edges of cones; contacts at one place that bear nothing, held before these,
+    would take their loads.
+    """
+    for c in range(s.n_c):
+        if rests(s, c):
+            s.mode[c] = s.new_mode[c] if s.new_loaded[c] == 1 else SLIDES
+            s.direction[c], s.loaded[c] = s.new_direction[c], s.new_loaded[c]
 
 
 def choose(s: Rubbing, way: int) -> None:
