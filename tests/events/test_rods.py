@@ -50,7 +50,7 @@ def pulled(t, q, v, p, out):
 
 
 @pytest.mark.parametrize("method", [*METHODS, Moreau(1e-3)], ids=["events", "2", "4", "tolerance", "moreau"])
-@pytest.mark.parametrize("n", [1, 2, 3])
+@pytest.mark.parametrize("n", [1, 2, 3, 4])
 def test_flat_rods_that_are_linked_slip_when_the_friction_of_all_their_ends_is_used_up(n, method):
     """At t = mu n g / pull, then x = pull (t - ..)^3 / 6 n; of five ends and more the first held for ever.
 

@@ -3,7 +3,8 @@
 What is wedged is held by more rows than it has ways to move. Those held first need not lie within their cones, though
 forces within all cones were found: normals of both walls alone may pull at one of them. Forces of just so many edges
 of cones as there are independent rows do, if any do: each contact sticks, leans on one edge of its cone or carries
-nothing. While these last, nothing moves; where one is used up, modes are sought anew.
+nothing. While these last, nothing moves; where one is used up, modes are sought anew. Of more contacts, and where no
+such forces are found, all stick, and tangents that say the same have one friction, with the limits of all.
 Source: R. W. Cottle, J.-S. Pang, R. E. Stone, The Linear Complementarity Problem (SIAM 2009), chapter 1.
 """
 
@@ -12,17 +13,20 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
-from lcpstep.events.contacts.equations import force_noise, size_of_loads
+from lcpstep.events.contacts.equations import force_noise, most_friction, size_of_loads
+from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.accelerations import accelerate_as_held
 from lcpstep.events.rows.contacts import hold_modes
 from lcpstep.events.rows.equations import size_of_acceleration
 from lcpstep.events.rows.held import is_held
+from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.vectors import product
-from lcpstep.pointers import abs
+from lcpstep.pointers import abs, max
 
 MOST = 4  # contacts at rest: of more not every way is tried
 WAYS = 4  # of a contact: it sticks, leans on either edge, or carries nothing
+ALIKE = 1e-6  # of a row: what counts for none of it
 STILL = 1e-9  # relative: accelerations of what is at rest; and distance of forces from the edges of cones
 
 
@@ -36,36 +40,53 @@ def braced(s: Rubbing) -> bool:
         if rests(s, c):
             resting += 1
             ways = ways * WAYS if resting <= MOST else 0
-    if resting < 2 or carries(s):
+    if resting < 2 or carries(s, STILL if ways > 0 else -STILL):
         return True
-    choose(s, 0)
-    hold_modes(s.rows)
-    independent = s.rows.n_held  # rows, where all stick
-    choose_as_found(s)
-    if hold_modes(s.rows) and s.rows.n_held == independent and carries(s):
-        return True
+    independent = 0  # rows, of the first way, in which all stick
     for way in range(ways):
         choose(s, way)
-        if hold_modes(s.rows) and s.rows.n_held == independent and carries(s):
+        held = hold_modes(s.rows)
+        independent = max(independent, s.rows.n_held)
+        if held and s.rows.n_held == independent and carries(s, STILL):
             return True
-    return False
+    return shares(s)
+
+
+def shares(s: Rubbing) -> bool:
+    """Whether contacts that all stick carry the load together, as those of what can only slide as a whole do.
+
+    Tangents that say the same are held as one, which has the friction of all: that of each is not known.
+    """
+    choose(s, 0)
+    if not hold_modes(s.rows):
+        return False
+    for c in range(s.n_c):
+        s.leader[c] = c
+        T = s.n_j + s.n_c + c
+        if rests(s, c) and not is_held(s.rows, T):
+            s.leader[c] = said_by(s, T)
+            if s.leader[c] < 0:
+                return False
+    s.sharing = True
+    return carries(s, -STILL)
+
+
+def said_by(s: Rubbing, i: int) -> int:
+    """The contact whose tangent, held, says what row i says, but for joints and normals that move neither; or -1."""
+    gives(s, i)
+    found = -1
+    for m in range(s.rows.n_held):
+        k = s.rows.row[m] - s.n_j
+        if k >= 0 and abs(s.rows.held[m]) > ALIKE:
+            if k < s.n_c or found >= 0 or abs(abs(s.rows.held[m]) - 1.0) > ALIKE:
+                return -1
+            found = k - s.n_c
+    return found
 
 
 def rests(s: Rubbing, c: int) -> bool:
     """Whether contact c is pressed and does not slide, as the modes were found."""
     return s.new_mode[c] == STICKS or s.new_mode[c] == LEANS
-
-
-def choose_as_found(s: Rubbing) -> None:
-    """Modes of what rests by the forces found: what bears none of them carries nothing.
-
-    The solver finds them on independent edges of cones; contacts at one place that bear nothing, held before these,
-    would take their loads.
-    """
-    for c in range(s.n_c):
-        if rests(s, c):
-            s.mode[c] = s.new_mode[c] if s.new_loaded[c] == 1 else SLIDES
-            s.direction[c], s.loaded[c] = s.new_direction[c], s.new_loaded[c]
 
 
 def choose(s: Rubbing, way: int) -> None:
@@ -79,20 +100,21 @@ def choose(s: Rubbing, way: int) -> None:
             s.loaded[c] = 0 if one == 3 else 1
 
 
-def carries(s: Rubbing) -> bool:
-    """Whether what rests stays at rest by the rows held, with forces within the cones by more than rounding.
+def carries(s: Rubbing, inside: float) -> bool:
+    """Whether what rests stays at rest by the rows held, with forces so far within the cones, or rounding.
 
-    At an edge others are looked for that are not: forces that go on outwards would leave it at once.
+    At an edge others are looked for that are not: forces that go on outwards would leave it at once. Normals, too,
+    where forces may be outside by a little: what begins to lean does so with none.
     """
     accelerate_as_held(s.rows)
-    within, noise = True, force_noise(s)
+    within, noise = True, force_noise(s) * max(1.0, -inside / NOISE)
     for c in range(s.n_c):
         i = s.n_j + c
         T = i + s.n_c
         if rests(s, c):
             within = within and is_still(s, i) and is_still(s, T)
         if s.mode[c] == STICKS and (is_held(s.rows, i) or is_held(s.rows, T)):
-            most = (1.0 - STILL) * s.mu_s[c] * s.multiplier[i] + (1.0 + s.mu_s[c]) * noise
+            most = (1.0 - inside) * most_friction(s, c) + (1.0 + s.mu_s[c]) * noise
             within = within and s.multiplier[i] >= -noise and abs(s.multiplier[T]) <= most
         elif s.mode[c] != OPEN:
             within = within and s.multiplier[i] >= -noise
@@ -100,6 +122,7 @@ def carries(s: Rubbing) -> bool:
 
 
 def is_still(s: Rubbing, i: int) -> bool:
-    """Whether row i has no acceleration."""
+    """Whether row i has no acceleration, or what rounding of forces makes of none."""
     size = size_of_acceleration(s.rows, i, s.a) + size_of_loads(s, i)
-    return abs(product(s.R, s.a, i, s.n_q) + s.bias[i]) <= STILL * size
+    none = STILL * size + force_noise(s) * s.W[i * s.n_r + i]
+    return abs(product(s.R, s.a, i, s.n_q) + s.bias[i]) <= none

@@ -125,3 +125,14 @@ def let_stick(s: Rubbing, fastest: float) -> bool:
         if slides and abs(s.velocity[i]) <= max(fastest, speed_tolerance(s.rows, i)):
             s.free[c], s.problem.mu[c], some = 1, s.mu_s[c], True
     return some
+
+
+def most_friction(s: Rubbing, c: int) -> float:
+    """The friction that contact c, which sticks, has at most: with that of all for which its tangent is held."""
+    if not s.sharing:
+        return s.mu_s[c] * s.multiplier[s.n_j + c]
+    most = 0.0
+    for d in range(s.n_c):
+        if s.leader[d] == c:
+            most += s.mu_s[d] * s.multiplier[s.n_j + d]
+    return most

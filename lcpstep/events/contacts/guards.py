@@ -11,7 +11,13 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
-from lcpstep.events.contacts.equations import force_noise, measure_friction, measure_gaps, share_left
+from lcpstep.events.contacts.equations import (
+    force_noise,
+    measure_friction,
+    measure_gaps,
+    most_friction,
+    share_left,
+)
 from lcpstep.events.contacts.held import right_hand_side
 from lcpstep.events.contacts.hops import begin_hops, first_landing
 from lcpstep.events.contacts.loose import forget_strays, notice
@@ -70,7 +76,7 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
             slip = product(s.R, v, i + s.n_c, s.n_q) + s.rate[i + s.n_c]
             s.value[k + 1] = s.direction[c] * slip
         elif s.mode[c] == STICKS:
-            most = s.mu_s[c] * s.multiplier[i]
+            most = most_friction(s, c)
             s.value[k + 1] = most - s.multiplier[i + s.n_c]
             s.value[k + 2] = most + s.multiplier[i + s.n_c]
         total += s.value[k] + s.value[k + 1] + s.value[k + 2]
@@ -212,11 +218,13 @@ def bow(s: Rubbing, g: int) -> float:
         for j in range(n):
             most += abs(s.R[row * n + j]) * bows[j]
         return most
-    share = 1.0 if g % GUARDS == 0 else s.mu_s[c]
-    for j in range(n):
-        most += share * abs(s.effects[j * m + n + i]) * s.dv[j]
-        if g % GUARDS > 0:
-            most += abs(s.effects[j * m + n + i + s.n_c]) * s.dv[j]
+    for d in range(s.n_c):
+        if d == c or (s.sharing and s.leader[d] == c):
+            share = 1.0 if g % GUARDS == 0 else s.mu_s[d]
+            for j in range(n):
+                most += share * abs(s.effects[j * m + n + s.n_j + d]) * s.dv[j]
+    for j in range(n if g % GUARDS > 0 else 0):
+        most += abs(s.effects[j * m + n + i + s.n_c]) * s.dv[j]
     return most
 
 

@@ -259,7 +259,7 @@ def adopt_modes(s: Rubbing) -> int:
 
 def take_over_modes(s: Rubbing) -> None:
     """The modes decided; what leans on others sticks where these, or nothing but it, can carry it."""
-    leaning = 0
+    leaning, s.sharing = 0, False
     for c in range(s.n_c):
         s.mode[c], s.direction[c], s.loaded[c] = s.new_mode[c], s.new_direction[c], s.new_loaded[c]
         s.touches[c] = 1 if s.mode[c] != OPEN else s.touches[c]

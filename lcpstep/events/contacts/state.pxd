@@ -18,7 +18,7 @@ cdef class Rubbing(RungeKutta):
     cdef Py_ssize_t guard, paced, loose, stalled
     cdef double found, slope, kept_to, shown, delay
     cdef readonly bint constant
-    cdef bint plain, risen
+    cdef bint plain, risen, sharing
     cdef Doubles nodes, weights, q, v, a_free, a, force, dy, seen, dv, R, MR, W
     cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, instant, paces
     cdef Doubles shifted_rate, counted, total, loads, doubt, effect, effects
@@ -28,6 +28,6 @@ cdef class Rubbing(RungeKutta):
     cdef readonly Motion watch
     cdef bint hopping, watched, flying
     cdef Py_ssize_t guards
-    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, tried, hops, carried
+    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, tried, hops, carried, leader
     cdef Doubles value, band, samples
     cdef Indices armed

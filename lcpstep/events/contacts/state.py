@@ -57,6 +57,7 @@ class Rubbing(RungeKutta):
     guards                       LOOKED, or since then a mode has begun (ENTERED), or velocities have jumped (JUMPED)
     loose, stray : (n_c,)        how many contacts have a row at rest that is not held; how large an acceleration of
         such a row has been, see `loose`
+    leader, sharing              whose tangent is held for that of each contact at rest, where some stand for others
     risen                        the guard found has been above its band before it falls through zero
     jams                         how often it did
     rounds, stalled              problems of impacts at this instant; events at one time before it
@@ -97,7 +98,7 @@ class Rubbing(RungeKutta):
         self.scan, self.coefficients, self.problem = Scan(), coefficients, rows.problem
         self.coefficients.use(self.problem.mu)
         self.guard, self.found, self.slope = -1, -1.0, 0.0
-        self.risen = False
+        self.risen = self.sharing = False
         self.kept_to, self.shown, self.delay = 0.0, 2.0, 0.0
         self.rule = np.array([nodes, weights])
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
@@ -138,11 +139,12 @@ class Rubbing(RungeKutta):
         self.bracket, self.hopping = Bracket(), False
         self.watch, self.watched, self.guards = None, False, ENTERED
         self.flying = False
-        self.marks = np.zeros(4 * n_c, dtype=np.intp)
+        self.marks = np.zeros(5 * n_c, dtype=np.intp)
         self.new_mode = indices(self.marks)
         self.new_loaded = indices_after(self.new_mode, n_c)
         self.hops = indices_after(self.new_loaded, n_c)
         self.carried = indices_after(self.hops, n_c)
+        self.leader = indices_after(self.carried, n_c)
         self.looks = np.zeros(GUARDS * n_c * (SAMPLES + 2))
         self.value = doubles(self.looks)
         self.band = after(self.value, GUARDS * n_c)
