@@ -107,12 +107,13 @@ def carries(s: Rubbing, inside: float) -> bool:
     where forces may be outside by a little: what begins to lean does so with none.
     """
     accelerate_as_held(s.rows)
-    within, noise = True, force_noise(s) * max(1.0, -inside / NOISE)
+    within, rounding = True, force_noise(s)
+    noise = rounding * max(1.0, -inside / NOISE)
     for c in range(s.n_c):
         i = s.n_j + c
         T = i + s.n_c
         if rests(s, c):
-            within = within and is_still(s, i) and is_still(s, T)
+            within = within and is_still(s, i, rounding) and is_still(s, T, rounding)
         if s.mode[c] == STICKS and (is_held(s.rows, i) or is_held(s.rows, T)):
             most = (1.0 - inside) * most_friction(s, c) + (1.0 + s.mu_s[c]) * noise
             within = within and s.multiplier[i] >= -noise and abs(s.multiplier[T]) <= most
@@ -121,8 +122,8 @@ def carries(s: Rubbing, inside: float) -> bool:
     return within
 
 
-def is_still(s: Rubbing, i: int) -> bool:
-    """Whether row i has no acceleration, or what rounding of forces makes of none."""
+def is_still(s: Rubbing, i: int, rounding: float) -> bool:
+    """Whether row i has no acceleration, or what that rounding of forces makes of none."""
     size = size_of_acceleration(s.rows, i, s.a) + size_of_loads(s, i)
-    none = STILL * size + force_noise(s) * s.W[i * s.n_r + i]
+    none = STILL * size + rounding * s.W[i * s.n_r + i]
     return abs(product(s.R, s.a, i, s.n_q) + s.bias[i]) <= none
