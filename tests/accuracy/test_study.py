@@ -57,6 +57,7 @@ def test_the_cost_of_an_error_lies_on_the_line_between_levels_and_beyond_is_said
 # --- studies
 
 
+@pytest.mark.slow
 def test_no_order_is_fitted_through_rounding():
     # three equal balls between walls move in straight lines: all methods that place impacts are exact, to rounding
     # that grows with every step, by an order of about -1
@@ -164,6 +165,7 @@ def test_a_blow_of_the_disturbed_start_alone_says_nothing_of_what_the_reference_
     assert 0.0 < known["sup_position"] < 1e-9
 
 
+@pytest.mark.slow
 def test_chaos_ends_the_comparison_where_it_separates_trajectories():
     scene = scenes.cam_follower(rpm=660.0, t_end=10.0)
     found = study(scene, Moreau(), h=[2e-4, 5e-5], horizon=5.0, **SHORT)

@@ -50,6 +50,7 @@ def test_an_impact_that_becomes_a_graze_ends_its_branch_in_few_points():
     assert len(branch.orbits) < 100
 
 
+@pytest.mark.slow
 def test_a_second_contact_that_is_about_to_be_touched_ends_a_branch():
     # A mass strikes the wall before it and has another behind it. As long as that is not touched the orbit does not
     # know of it, and it is grazed where it stands at the orbit's lowest point.

@@ -206,7 +206,14 @@ def test_the_derivative_of_the_grazing_map_is_that_of_its_differences():
 # --- maps of ones own
 
 
-@pytest.mark.parametrize(("n", "known"), [(1, 2), (2, 1), (3, 0), (4, 1), (5, 0), (6, 2), (7, 4)])
+@pytest.mark.parametrize(
+    ("n", "known"),
+    [
+        (1, 2),
+        (2, 1),
+        *(pytest.param(*x, marks=pytest.mark.slow) for x in [(3, 0), (4, 1), (5, 0), (6, 2), (7, 4)]),
+    ],
+)
 def test_the_map_of_henon_has_as_many_cycles_as_are_known(n, known):
     """O. Biham, W. Wenzel, Physical Review Letters 63 (1989): all cycles at a = 1.4, b = 0.3."""
 

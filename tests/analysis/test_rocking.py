@@ -82,7 +82,14 @@ def test_the_symmetric_orbit_is_that_in_closed_form(b, w, r):
     )  # flows keep areas, a blow leaves r^2
 
 
-@pytest.mark.parametrize(("b", "w", "r"), [(8.0, 5.0, 0.5), (8.0, 3.0, 0.05), (5.0, 4.0, 0.3)])
+@pytest.mark.parametrize(
+    ("b", "w", "r"),
+    [
+        (8.0, 5.0, 0.5),
+        pytest.param(8.0, 3.0, 0.05, marks=pytest.mark.slow),
+        pytest.param(5.0, 4.0, 0.3, marks=pytest.mark.slow),
+    ],
+)
 def test_where_the_orbit_loses_its_symmetry_is_a_branch_point(b, w, r):
     orbit = periodic_orbit(block(b, w, r), symmetric(b, w, r))
     branch = continue_orbit(lambda b: block(b, w, r), orbit, b, (0.2 * b, 1.1 * b), forward=False)
@@ -105,6 +112,7 @@ def test_a_block_that_overturns_goes_to_no_attractor():
     assert found.label.tolist() == [-1, -1]
 
 
+@pytest.mark.slow
 def test_blocks_that_overturn_are_in_no_basin():
     scene = block(8.0, 5.0, 0.5)
     found = basins(scene, [-3.0, -0.1], [3.0, 0.1], (12, 2), longest=40, sample=0)

@@ -49,6 +49,7 @@ def test_few_starts_are_followed_for_long(simulated):
     assert [a.name for a in every.found] == [a.name for a in found.found] == ["O(1, 2)", "O(1, 2)"]
 
 
+@pytest.mark.slow
 def test_an_attractor_that_none_of_the_first_starts_goes_to_is_found():
     scene, longest = between_walls(), 150
     still = np.array([[-0.4363, -0.0190]]) + 1e-3 * random_starts([[-1, -1], [1, 1]], 4, seed=1)
@@ -63,6 +64,7 @@ def test_an_attractor_that_none_of_the_first_starts_goes_to_is_found():
         assert a.points == pytest.approx(b.points, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_what_is_slow_is_divided_into_parts_that_are_soon_done():
     counted = []
     data = module.basins(

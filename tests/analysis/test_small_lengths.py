@@ -116,7 +116,9 @@ def test_a_map_without_a_derivative_is_differenced_over_its_own_length(unit):
     assert lyapunov(sine, [0.3 * unit], 30).largest == pytest.approx(one.largest, abs=1e-6)
 
 
-@pytest.mark.parametrize(("unit", "place"), [(1e-6, 1.0), (1.0, 1e4), (1e-3, -3.0)])
+@pytest.mark.parametrize(
+    ("unit", "place"), [pytest.param(1e-6, 1.0, marks=pytest.mark.slow), (1.0, 1e4), (1e-3, -3.0)]
+)
 def test_attractors_of_a_motion_far_from_zero_are_those_near_it(unit, place):
     def struck(unit, place):
         force = Harmonic(constant=place, cosine=unit, omega=2.6)

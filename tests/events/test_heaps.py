@@ -11,7 +11,7 @@ from tests.random_heaps import METHODS, energy, heap
 
 @pytest.mark.parametrize(
     "seed",
-    [17, 110, 187, *(pytest.param(k, marks=pytest.mark.slow) for k in (0, 2, 7, 26, 45, 52, 134, 225, 381))],
+    [110, 187, *(pytest.param(k, marks=pytest.mark.slow) for k in (17, 0, 2, 7, 26, 45, 52, 134, 225, 381))],
 )
 def test_heaps_settle_by_every_method_alike(seed):
     """What went wrong, by heap.

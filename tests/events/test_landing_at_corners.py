@@ -44,7 +44,12 @@ def scene(v, before, after, restitution, others=0, law=None):
 @pytest.mark.parametrize("method", METHODS, ids=str)
 @pytest.mark.parametrize("meeting", MEETINGS, ids=str)
 @pytest.mark.parametrize(
-    ("others", "law"), [(0, None), (1, None), (1, "moreau"), (1, "newton"), (1, "stronge")]
+    ("others", "law"),
+    [
+        (0, None),
+        (1, "stronge"),
+        *(pytest.param(1, law, marks=pytest.mark.slow) for law in (None, "moreau", "newton")),
+    ],
 )
 def test_velocities_after_it(meeting, method, others, law):
     v, before, after = meeting

@@ -70,6 +70,7 @@ def test_proofs_in_any_units(W, b, rows, columns):
         assert q @ y < -1e-14 * np.abs(q) @ y
 
 
+@pytest.mark.slow
 def test_rays_are_what_they_say_in_any_units():
     rng, rays = np.random.default_rng(5), 0
     for _ in range(1500):
