@@ -41,7 +41,7 @@ TANGENT = {"jacobian": "tangent", "gap_t": "slip"}  # what is named so where tan
 def dense(name: str, matrix: Any) -> Array:
     """An array of its own from a dense or a sparse matrix; LcpStepError for one that is too large for that."""
     if not hasattr(matrix, "toarray"):
-        return np.array(matrix)
+        return np.array(matrix, order="C")
     if max(matrix.shape) > LARGEST_DENSE:
         raise refused("dense", argument=name)
     return np.ascontiguousarray(matrix.toarray())
@@ -193,9 +193,10 @@ def _known(part: Any, read: Callable[[Any], dict[str, Any]], scene: Scene) -> di
     known = KEPT.get(part)
     if known is None:
         known = read(part)
-        for x in known.values():
+        for name, x in known.items():
             if isinstance(x, np.ndarray):
-                x.flags.writeable = False
+                known[name] = np.ascontiguousarray(x)
+                known[name].flags.writeable = False
         if scene.n_q <= LARGEST_KEPT and scene.n_c <= LARGEST_KEPT:
             KEPT[part] = known
     return known

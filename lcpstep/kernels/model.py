@@ -17,6 +17,8 @@ from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.function import Function
 from lcpstep.pointers import after
 
+ABSENT = Function(0, np.zeros(0), 0, 0, (0,))
+
 
 class Model:
     """Everything a kernel needs to evaluate a scene's equations; see `lagrangian` for the symbols.
@@ -35,12 +37,12 @@ class Model:
 
     Parameters
     ----------
-    fields : dict   these by name, functions as addresses of C functions (0: none), and `p`; `called_back`: what
-        must outlive this object; see `lcpstep.model`
+    fields : dict   these by name, arrays contiguous, functions as addresses of C functions (0: none), and `p`;
+        `called_back`: what must outlive this object; see `lcpstep.model`
     """
 
     def __init__(self, fields: dict[str, Any]) -> None:
-        own = {name: np.ascontiguousarray(x) for name, x in fields.items() if isinstance(x, np.ndarray)}
+        own = {name: x for name, x in fields.items() if type(x) is np.ndarray}
         n_c, n_q = own["G"].shape
         self.arrays, self.kept, self.n_q, self.n_c = own, fields["called_back"], n_q, n_c
         self.linear, self.flat, self.carried = fields["linear"], fields["flat"], fields["carried"]
@@ -55,7 +57,7 @@ class Model:
         self.G_ends = indices(own["G_ends"])
         self.frame_now, self.motion_now = doubles(own["frame_now"]), doubles(own["motion_now"])
         made = {
-            name: Function(fields[name], own["p"], n_q, n_q, shape)
+            name: Function(fields[name], own["p"], n_q, n_q, shape) if fields[name] else ABSENT
             for name, shape in shapes(n_q, n_c).items()
         }
         self.force, self.frame, self.mass = made["force"], made["frame"], made["mass"]
