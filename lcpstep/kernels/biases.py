@@ -13,7 +13,7 @@ import cython
 
 from lcpstep.kernels.dynamics import gap_rates, moves, obstacle
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import clear, product, size_of_product
+from lcpstep.kernels.vectors import clear, product, product_and_size
 from lcpstep.pointers import Doubles, abs, inf, max, min
 
 # Fourth-order differences that stand in for a missing bias: the longest way they take; the third difference, relative
@@ -137,8 +137,9 @@ def differences(
         weight = -value_share(place, -beside) if k < 4 else 1.0
         rates_ahead(m, t, d * (beside + place), q, v, shifted, G, rate)
         for c in range(m.n_c):
-            u = product(G, v, c, m.n_q) + rate[c]
-            now[3 * c + 2] = max(now[3 * c + 2], abs(rate[c]) + size_of_product(G, v, c, m.n_q))
+            u, size = product_and_size(G, v, c, m.n_q)
+            u += rate[c]
+            now[3 * c + 2] = max(now[3 * c + 2], abs(rate[c]) + size)
             even[c] = even[c] + weight * u
             if k < 4:
                 now[3 * c + k // 2] += u * sign

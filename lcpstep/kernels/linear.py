@@ -131,10 +131,17 @@ def uncouple(W: Doubles, R: Doubles, X: Doubles, first: int, last: int, n: int, 
     rest to every blow elsewhere, and be all that a complementarity problem has in its row.
     """
     for i in range(first, last):
-        for k in range(first, last):
-            both, own = W[i * n + k], W[i * n + i] * W[k * n + k]
-            if both != 0.0 and cancels(both, own, after(R, i * n_q), after(X, k * n_q), n_q):
-                W[i * n + k] = 0.0
+        for k in range(first, i):
+            uncouple_two(W, R, X, i, k, n, n_q)
+
+
+def uncouple_two(W: Doubles, R: Doubles, X: Doubles, i: int, k: int, n: int, n_q: int) -> None:
+    """The same of rows i and k, which are not one."""
+    one, other, own = W[i * n + k], W[k * n + i], W[i * n + i] * W[k * n + k]
+    if one != 0.0 and cancels(one, own, after(R, i * n_q), after(X, k * n_q), n_q):
+        W[i * n + k] = 0.0
+    if other != 0.0 and cancels(other, own, after(R, k * n_q), after(X, i * n_q), n_q):
+        W[k * n + i] = 0.0
 
 
 def cancels(both: float, own: float, row: Doubles, way: Doubles, n_q: int) -> bool:

@@ -70,6 +70,16 @@ def size_of_product(G: Doubles, v: Doubles, c: int, n: int) -> float:
     return size
 
 
+def product_and_size(G: Doubles, v: Doubles, c: int, n: int) -> tuple[float, float]:
+    """(G v)_c and the size of its terms, by one way through the row."""
+    total = size = 0.0
+    for j in range(n):
+        term = G[c * n + j] * v[j]
+        total += term
+        size += abs(term)
+    return total, size
+
+
 def largest(x: Doubles, least: float, n: int) -> float:
     """Largest magnitude of the entries of x, or `least`."""
     for i in range(n):

@@ -97,7 +97,8 @@ def size_of_loads(s: Rubbing, i: int) -> float:
     """Size of the terms of what the forces of joints and contacts make of row i's acceleration."""
     size = 0.0
     for k in range(s.n_r):
-        size += abs(s.multiplier[k]) * size_of(s.rows, i, 0.0, after(s.MR, k * s.n_q))
+        if s.multiplier[k] != 0.0:
+            size += abs(s.multiplier[k]) * size_of(s.rows, i, 0.0, after(s.MR, k * s.n_q))
     return size
 
 

@@ -14,13 +14,14 @@ from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import divide_by_mass, response
 from lcpstep.kernels.biases import bias
 from lcpstep.kernels.dynamics import gap_rates, gaps, total_force
-from lcpstep.kernels.linear import uncouple
+from lcpstep.kernels.linear import uncouple_two
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import copy, filled, product_at
 from lcpstep.pointers import Doubles, abs, after, min
 
 JUMPS = 1e-9  # of velocities: a rate of a gap that changes by less at a corner does so by rounding
 BENDS = 8.0  # times what it changes by just beside the corner: neither is that a jump
+BITS = 62  # of a whole number that kernels count by, its sign left aside
 
 
 def free_motion(s: Rows, t: float, q: Doubles, v: Doubles, a: Doubles) -> bool:
@@ -99,9 +100,24 @@ def respond(s: Rows) -> None:
     s.on_joints, s.known = False, s.fixed
     for i in range(s.n_r):
         respond_to(s, i)
-        for j in range(i + 1):
-            couple(s, i, j)
-    uncouple(s.D, s.R, s.MR, 0, s.n_r, s.n_r, s.n_q)
+        couple(s, i, i)
+        s.reach[i] = reach_of(after(s.R, i * s.n_q), s.n_q)
+        moved = reach_of(after(s.MR, i * s.n_q), s.n_q)
+        for j in range(i):
+            if s.reach[j] & moved == 0:
+                s.D[i * s.n_r + j] = s.D[j * s.n_r + i] = 0.0
+            else:
+                couple(s, i, j)
+                uncouple_two(s.D, s.R, s.MR, i, j, s.n_r, s.n_q)
+
+
+def reach_of(x: Doubles, n: int) -> int:
+    """The entries of x that are not zero, each a bit, of many coordinates one for several: a row moves few of them."""
+    found, bit = 0, 1
+    for j in range(n):
+        if x[j] != 0.0:
+            found |= bit << (j % BITS)
+    return found
 
 
 def respond_held(s: Rows) -> None:

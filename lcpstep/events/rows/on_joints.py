@@ -32,7 +32,9 @@ TOLD, TURNED = 1e-9, 1e-6
 def leave_joints(s: Rows) -> None:
     """Rows and their Delassus matrix on the joints held, and the biases that belong to them."""
     s.on_joints = True
-    for i in range(s.n_j, s.n_r if s.n_j > 0 else 0):  # without joints they are R and D
+    if s.n_j == 0:  # they are R and D
+        return
+    for i in range(s.n_j, s.n_r):
         put_on_joints(s, i)
         for k in range(s.n_j, i + 1):
             couple_on_joints(s, i, k)

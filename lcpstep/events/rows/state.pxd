@@ -11,4 +11,4 @@ cdef class Rows(Clock):
     cdef double slack
     cdef Doubles a_free, force, work, shifted, M, R, MR, D, G, rate, bias, near, further
     cdef Doubles held, change, share, doubt, L, bias_on, R_on, MR_on, D_on, idle
-    cdef Indices row, either, rests, moved
+    cdef Indices row, either, rests, reach, moved

@@ -36,6 +36,7 @@ class Rows(Clock):
     L : (n_r, n_r)            factors of the matrix of the rows held;  doubt   relative error of a pivot, in roundings
     idle : (n_j, n_j)         what joints that say the same can take from each other, see `loads`
     rests : (n_r,)            whether the velocity of a row is to be zero, held or not: of joints always
+    reach : (n_r,)            coordinates that move each row, see `equations.reach_of`
     moved : (n_q,), n_moved   coordinates that an impulse on the row at hand moves, and how many
     R_on, MR_on, D_on, bias_on   R, MR, D and bias of what is left of the rows on the joints held, see `on_joints`
     on_joints                 whether these are known
@@ -98,9 +99,10 @@ class Rows(Clock):
             self.MR_on = after(self.R_on, r * n)
             self.D_on = after(self.MR_on, r * n)
             self.idle = after(self.D_on, r * r)
-        self.row_list = np.zeros(3 * r + n, dtype=np.intp)
+        self.row_list = np.zeros(4 * r + n, dtype=np.intp)
         self.row = indices(self.row_list)
         self.either = indices_after(self.row, r)
         self.rests = indices_after(self.either, r)
-        self.moved, self.n_moved = indices_after(self.rests, r), 0
+        self.reach = indices_after(self.rests, r)
+        self.moved, self.n_moved = indices_after(self.reach, r), 0
         self.row_list[2 * r : 2 * r + n_j] = 1
