@@ -112,7 +112,7 @@ def respond(s: Rows) -> None:
 
 
 def reach_of(x: Doubles, n: int) -> int:
-    """The entries of x that are not zero, each a bit, of many coordinates one for several: a row moves few of them."""
+    """The entries of x that are not zero, each a bit; of many coordinates one stands for several."""
     found, bit = 0, 1
     for j in range(n):
         if x[j] != 0.0:
