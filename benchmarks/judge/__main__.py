@@ -1,4 +1,5 @@
-"""Judge random scenes: `python -m benchmarks.judge --scenes 10000 --seed 1`; those of round numbers: `--tidy`.
+"""Judge random scenes: `python -m benchmarks.judge --scenes 10000 --seed 1`; those of round numbers: `--tidy`;
+of bodies whose contacts hang together: `--coupled`.
 
 Every anomaly is printed with the lines that reproduce it, and at the end tables; exit status 1 if there is any in a
 run that does not say itself, by its `doubt`, that it is wrong. After an interrupt (Ctrl-C) the tables are those of
@@ -15,6 +16,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from benchmarks.judge.case import SHARE
+from benchmarks.judge.coupled.scenes import FAMILIES as COUPLED
+from benchmarks.judge.coupled.scenes import Coupled, coupled
 from benchmarks.judge.describe import Description
 from benchmarks.judge.draw import draw
 from benchmarks.judge.pool import CPU_LIMIT, Answer, Court, answers
@@ -33,10 +36,14 @@ def options() -> argparse.ArgumentParser:
     parser.add_argument("--scenes", type=int, default=1000, help="how many")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--tidy", action="store_true", help="scenes as people write them, of round numbers")
+    parser.add_argument("--coupled", action="store_true", help="heaps, rods and linkages")
     parser.add_argument("--first", type=int, default=0, help="number of the first scene")
     parser.add_argument("--method", nargs="+", choices=sorted(WAYS), default=list(WAYS))
     parser.add_argument(
-        "--family", nargs="+", choices=sorted(FAMILIES | TIDY), help="only these classes of scenes"
+        "--family",
+        nargs="+",
+        choices=sorted({*FAMILIES, *TIDY, *COUPLED}),
+        help="only these classes of scenes",
     )
     parser.add_argument("--kind", help="only anomalies whose class has this in its name are shown")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
@@ -52,10 +59,11 @@ def options() -> argparse.ArgumentParser:
     return parser
 
 
-def scenes(given: argparse.Namespace) -> Iterator[tuple[int, Description]]:
+def scenes(given: argparse.Namespace) -> Iterator[tuple[int, Description | Coupled]]:
     """The scenes asked for, with their numbers."""
+    one = tidy if given.tidy else coupled if given.coupled else draw
     for k in range(given.first, given.first + given.scenes):
-        d = tidy(given.seed, k) if given.tidy else draw(given.seed, k)
+        d = one(given.seed, k)
         if not given.family or d.family in given.family:
             yield k, d
 
@@ -80,7 +88,9 @@ def small(d: Description, finding: Finding, given: argparse.Namespace) -> Descri
 def show(answer: Answer, finding: Finding, given: argparse.Namespace) -> None:
     """An anomaly, and what reproduces it."""
     print(f"# scene {answer.index}, {finding.method}: {finding.kind}: {finding.text}")
-    d = small(answer.scene, finding, given) if given.shrink else answer.scene
+    d = answer.scene
+    if given.shrink and isinstance(d, Description):
+        d = small(d, finding, given)
     print(lines(d, finding.method), end="\n\n", flush=True)
 
 

@@ -14,7 +14,10 @@ from collections.abc import Generator, Iterable, Iterator
 from multiprocessing.connection import wait
 from typing import Any, NamedTuple
 
-from benchmarks.judge.case import SHARE, judged
+from benchmarks.judge import case
+from benchmarks.judge.case import SHARE
+from benchmarks.judge.coupled.case import judged as judged_coupled
+from benchmarks.judge.coupled.scenes import Coupled
 from benchmarks.judge.describe import Description
 from benchmarks.judge.runs import Clock, Finding
 from benchmarks.judge.warm import warm
@@ -27,7 +30,7 @@ class Answer(NamedTuple):
     """What was found out about a scene."""
 
     index: int
-    scene: Description
+    scene: Description | Coupled
     endings: dict[str, str]
     findings: list[Finding]
     orders: dict[str, float]
@@ -42,6 +45,7 @@ def _work(pipe: Any, limit: float, share: float) -> None:
         if task is None:
             return
         scene, methods, without = task
+        judged = judged_coupled if isinstance(scene, Coupled) else case.judged
         try:
             pipe.send(judged(scene, methods, pipe.send, share, without))
         except BrokenPipeError:  # nobody is listening any more
@@ -62,7 +66,9 @@ class _Worker:
         self.task: Any = None
         self.at = ""
 
-    def give(self, index: int, scene: Description, methods: list[str], without: tuple[str, ...] = ()) -> None:
+    def give(
+        self, index: int, scene: Description | Coupled, methods: list[str], without: tuple[str, ...] = ()
+    ) -> None:
         """A scene to judge, without the methods at which workers have been lost."""
         self.task, self.at = (index, scene, methods, without), ""
         self.pipe.send((scene, methods, without))
@@ -76,7 +82,7 @@ class _Worker:
 
 
 def answers(
-    scenes: Iterable[tuple[int, Description]],
+    scenes: Iterable[tuple[int, Description | Coupled]],
     methods: list[str],
     workers: int,
     limit: float = CPU_LIMIT,
@@ -132,7 +138,7 @@ class Court:
         self.worker.stop()
 
 
-def _next(w: _Worker, scenes: Iterator[tuple[int, Description]], methods: list[str]) -> None:
+def _next(w: _Worker, scenes: Iterator[tuple[int, Description | Coupled]], methods: list[str]) -> None:
     task = next(scenes, None)
     w.task = None
     if task is not None:

@@ -224,7 +224,7 @@ def lines(d: Description, name: str) -> str:
     """The few lines that reproduce a run."""
     method = WAYS[name].code.format(h="d.h")
     return (
-        "from benchmarks.judge.describe import Description\n"
+        f"from {type(d).__module__} import {type(d).__name__}\n"
         "from lcpstep import EventDriven, Located, Moreau, simulate\n"
         f"d = {d!r}\nmotion = simulate(d.scene(), {method})"
     )

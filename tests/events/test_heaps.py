@@ -5,8 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.judge.coupled.heaps import heap
+from benchmarks.judge.coupled.scenes import energy
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
-from tests.random_heaps import METHODS, energy, heap
+
+METHODS = (
+    EventDriven(1e-9, 1e-9, jamming="impact"),
+    Located(5e-4),
+    Located(4e-3, order=4),
+    Located(1e-2, order=4, tolerance=1e-6),
+)
 
 
 @pytest.mark.parametrize(

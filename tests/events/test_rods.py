@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from benchmarks.judge.coupled.rods import G, gaps, link_rows, links, normals, rods, tangents
 from lagrangian import Contacts, Coulomb, Joints, LinearSystem, Scene
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
+from tests.events.test_heaps import METHODS
 from tests.marks import slow
-from tests.random_rods import METHODS, G, gaps, link_rows, links, normals, rods, tangents
 
 MU, PULL = 0.3, 10.0  # N/s
 

@@ -1,18 +1,10 @@
-"""Random rods that fall on a rough floor, linked to chains by joints or each for itself.
-
-`python -m tests.random_rods A B` looks at those from A to B: all end, by all methods in one place.
-"""
-
-from dataclasses import replace
+"""Random rods that fall on a rough floor, linked to chains by joints or each for itself."""
 
 import numpy as np
 
 from lagrangian import Contacts, Coulomb, Joints, LinearSystem, Scene
-from lcpstep import EventDriven, Located, simulate
-from tests.random_heaps import MOVED, disagreement, tell
 
 HALF, G = 0.5, 9.81
-NEAR = 1e-4  # m
 
 
 def gaps(t, q, v, p, out):
@@ -85,30 +77,3 @@ def rods(seed):
         ),
         joints=Joints(2 * (n - 1), links, link_rows) if linked else None,
     )
-
-
-METHODS = (
-    EventDriven(1e-9, 1e-9, jamming="impact"),
-    Located(5e-4),
-    Located(4e-3, order=4),
-    Located(1e-2, order=4, tolerance=1e-6),
-)
-
-
-def sensitivity(scene, true):
-    """How far apart a motion ends that begins higher, or lower, by next to nothing."""
-    apart = 0.0
-    for way in (MOVED, -MOVED):
-        moved = replace(scene, q0=scene.q0 + way * np.tile([0.0, 1.0, 0.0], len(scene.q0) // 3))
-        apart = max(apart, np.max(np.abs(simulate(moved, METHODS[0], keep=[1.0]).q[-1] - true.q[-1])))
-    return apart
-
-
-def complaints(seed):
-    """What is wrong with the runs of some rods, in words."""
-    scene = rods(seed)
-    return disagreement(scene, [simulate(scene, method) for method in METHODS], NEAR, sensitivity)
-
-
-if __name__ == "__main__":
-    tell(complaints)
