@@ -30,6 +30,17 @@ def test_a_rod_slips_when_it_does_and_not_when_others_are_looked_at(h):
         assert np.max(np.abs(run.q[-1] - true.q[-1])) < 2.0 * tolerance
 
 
+def test_rods_whose_friction_others_bear_rest_though_rounding_pulls_at_them():
+    """One of three flat rods was held for all: what its force left of the others' none was taken for their slipping.
+
+    By steps by a tolerance, which came to no end of it.
+    """
+    true = simulate(rods(89), EventDriven(1e-12, 1e-12), keep=[1.0])
+    for tolerance in (1e-5, 1e-6):
+        run = simulate(rods(89), Located(4e-3, order=4, tolerance=tolerance, max_events=10_000), keep=[1.0])
+        np.testing.assert_allclose(run.q[-1], true.q[-1], rtol=0, atol=tolerance)
+
+
 @pytest.mark.parametrize("seed", slow([2, 3, 17, 25, 51, 73, 104, 122], 2, 3, 17, 73))
 def test_ends_at_one_place_do_not_hand_their_load_over_without_end(seed):
     """Two ends that a joint links touch the floor together: Newton's iteration went to and fro between them.

@@ -10,7 +10,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
-from lcpstep.events.contacts.equations import size_of_loads
+from lcpstep.events.contacts.equations import force_noise, size_of_loads
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.rows.contacts import rubs
 from lcpstep.events.rows.equations import renew_biases, size_of_acceleration
@@ -101,8 +101,11 @@ def straying(s: Rubbing, a: Doubles, level: float) -> int:
 
 
 def strays(s: Rubbing, i: int, a: Doubles, least: float) -> bool:
-    """Whether row i is not held and has, under a, an acceleration of more than that share of its terms."""
+    """Whether row i is not held and has, under a, an acceleration of more than that share of its terms.
+
+    Forces of bodies that hang together are rounded as the largest is: in one that bears none, this leaves as much.
+    """
     alpha = 0.0 if is_held(s.rows, i) else abs(product(s.R, a, i, s.n_q) + s.bias[i])
-    if alpha == 0.0:
+    if alpha == 0.0 or alpha <= least * (size_of_acceleration(s.rows, i, a) + size_of_loads(s, i)):
         return False
-    return alpha > least * (size_of_acceleration(s.rows, i, a) + size_of_loads(s, i))
+    return alpha > force_noise(s) * s.W[i * s.n_r + i]
