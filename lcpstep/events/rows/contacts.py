@@ -24,7 +24,7 @@ from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.together import gap_rounding
-from lcpstep.kernels.vectors import add, clear, product
+from lcpstep.kernels.vectors import add, clear, product, size_of_product
 from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
 
 STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
@@ -102,9 +102,14 @@ class Contacts(Rows):
         return self.terms[c]
 
     def rounding_of_gap(self, c: int) -> float:
-        """Rounding of gap c at the state at hand, as far as its terms are known."""
-        R = after(self.R, self.n_j * self.n_q)
-        return gap_rounding(self.model, R, self.q, c, abs(self.gap[self.n_j + c]))
+        """Rounding of gap c at the state at hand, as far as its terms are known, and of joints that move it."""
+        R, i = after(self.R, self.n_j * self.n_q), self.n_j + c
+        size = abs(self.gap[i])
+        for j in range(self.n_j):
+            share = self.D[i * self.n_r + j]
+            if share != 0.0:
+                size += abs(share) / self.D[j * self.n_r + j] * size_of_product(self.R, self.q, j, self.n_q)
+        return gap_rounding(self.model, R, self.q, c, size)
 
     def mode_closed(self, c: int) -> int:
         """The mode in which contact c would be closed: it slides on, if it does."""
