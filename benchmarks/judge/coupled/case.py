@@ -1,8 +1,9 @@
 """One scene of coupled bodies before the judge: methods agree, and starts moved by rounding end together.
 
 Such motions may grow small errors by many orders, impact by impact, and whatever moves them by 1e-10 says by how
-much. What moves them by 1e-13 then has to stay nearer by about as much. Where it does not, rounding has decided
-something, as which of two contacts opens, that the motion itself does not leave open.
+much. What moves them by 1e-13 then has to stay nearer by about as much. Where it does not, and has been nearer by far
+a moment before, rounding has decided something, as which of two contacts opens, that the motion itself does not leave
+open. (A run's own rounding, of some 1e-12, grows as steadily.)
 """
 
 from __future__ import annotations
@@ -22,10 +23,8 @@ from lagrangian import LinearSystem
 
 LOOKS, WAYS_OUT = 100, 3  # in time; directions in which a start is moved
 ROUNDING, LITTLE = 1e-13, 1e-10  # by which it is [m], [rad]
-SEEN, STEADY = (
-    1e-6,
-    0.1,
-)  # from which it is looked at; LITTLE / ROUNDING is 1000, of which roots of grazes leave 30
+SEEN, SUDDEN = 1e-6, 1e3  # from which on it is looked at; times what it was a look before
+STEADY = 0.1  # of those moved by LITTLE, 1000 times as far at first; roots, as of grazes, leave 30 of that
 NEAR, FARTHER, FACTOR, CONVERGED = 3e-6, 100.0, 10.0, 0.02
 GAINED = 1e-5  # J; steps of `Moreau` gain more, along what bends
 
@@ -99,9 +98,10 @@ def spread(d: Coupled, r: Run, by: float, looks: Any) -> Any:
 
 
 def parts(name: str, near: Any, far: Any, looks: Any) -> Iterator[Finding]:
-    """Whether starts moved by rounding are no nearer to each other than others, when that is first seen."""
+    """Whether starts moved by rounding part at once, as far as others do, when that is first seen."""
     k = int(np.argmax(near > SEEN))
-    if near[k] > SEEN and (near[k] == np.inf or near[k] > STEADY * far[k]):
+    sudden = k > 0 and near[k] > max(SEEN, SUDDEN * near[k - 1])
+    if sudden and (near[k] == np.inf or near[k] > STEADY * far[k]):
         text = f"{near[k]:.3g} apart at t = {looks[k]:.9g} from {ROUNDING}, {far[k]:.3g} from {LITTLE}"
         yield Finding(name, "parts by rounding", text)
 
