@@ -114,7 +114,7 @@ def agrees(d: Coupled, r: Run, reference: Run, allowed: Any, looks: Any) -> Iter
     bad = np.flatnonzero((own < CONVERGED) & (distance > FACTOR * own + allowed))
     if len(bad):
         k = int(bad[0])
-        finest = apart(run(d, r.method, finer_by(r) ** 2), q, looks)[k]
+        finest = apart(run(d, r.method, finer_by(r) ** 3), q, looks)[k]
         if finest > 0.3 * distance[k]:
             text = f"{distance[k]:.3g}, finer {finest:.3g} from {reference.method} at t = {looks[k]:.9g}"
             yield Finding(r.method, "disagrees", f"{text}, {own[k]:.3g} from itself with a finer step")
