@@ -4,7 +4,7 @@
 
 Such a gap is met nowhere with a speed u = G v, so that no law of impact answers, and no method knows how deep a step
 is inside, g / |G|. At events of each contact the gradient is compared with that a little further along it, as far as
-states were kept near them.
+states were kept near them. That one points the same way; on an obstacle that is only narrow, a needle, it has turned.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 LOOKS = 64  # states that tell how far the motion goes
 NEAR = 1e-2  # of the way that the coordinates go: where the gradient is looked at again
 VANISHES = 1e-2  # of that gradient
+SAME_WAY = 0.9  # of a gradient, that is seen along the one at the obstacle
 MET = (Kind.IMPACT, Kind.ACCUMULATION, Kind.STICK)
 
 
@@ -55,7 +56,10 @@ def _vanishes(m: Model, c: int, t: float, q: Array, aside: float) -> bool:
     here = float(np.linalg.norm(G))
     if here == 0.0:
         return True
-    return here < VANISHES * float(np.linalg.norm(_gradient(m, c, t, q + aside / here * G)))
+    n = G / here
+    further = _gradient(m, c, t, q + aside * n)
+    size = float(np.linalg.norm(further))
+    return here < VANISHES * size and float(n @ further) > SAME_WAY * size
 
 
 def _gradient(m: Model, c: int, t: float, q: Array) -> Array:

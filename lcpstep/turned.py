@@ -4,8 +4,9 @@
 
 A row that carries an impulse and turns by more than a radian has turned the motion by as much in one step: no order
 helps there, what comes out may be anything, and nothing that is looked at afterwards need tell (the gap is closed
-again, energy has come and gone). A light body that a round joint or a bent obstacle turns about under a heavy one is
-so fast for a moment only, wherefore fast steps are asked (`kernels/turned.py`). Steps by a tolerance are not asked.
+again, energy has come and gone). Between two impacts that have their own times nothing is held. A light body that a
+round joint or a bent obstacle turns about under a heavy one is so fast for a moment only, wherefore fast steps are
+asked (`kernels/turned.py`). Steps by a tolerance are not asked.
 Source of the bound: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I (1993), section
 II.1: methods of order p <= 4 with so many stages are unbounded beyond |h lambda| = 2.8.
 """
@@ -15,10 +16,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from lagrangian import LinearContacts, LinearJoints
 from lcpstep.depth import fixed_step
 from lcpstep.faults import cause, forget
-from lcpstep.trajectory import Status, Trajectory
+from lcpstep.trajectory import Kind, Status, Trajectory
 
 if TYPE_CHECKING:
     from lcpstep.kernels.model import Model
@@ -27,6 +30,7 @@ LOOKS = 64  # steps that are looked at, the fastest of each part of the run
 LEAST = math.cos(1.0)  # of the cosine: a radian in a step
 LATER = 1e-9  # of a step: of the times of its ends
 SHARE = 0.1  # of a radian: what steps that resolve the motion turn by
+STILL = 1e-9  # of the speed of a motion: a slower approach is that of a closed contact
 
 
 def turned(run: Trajectory) -> str:
@@ -62,7 +66,8 @@ def _too_far(run: Trajectory, m: Model, impulse: Any, what: str) -> str:
     """The row that turns farthest in one of the steps looked at, in words; impulse : None where all hold always."""
     from lcpstep.kernels.turned import farthest_turn
 
-    cosine, k, c = farthest_turn(m, run.t, run.q, run.v, impulse, run.method.h * (1.0 + LATER), LOOKS)
+    held = None if impulse is None else _held(run)
+    cosine, k, c = farthest_turn(m, run.t, run.q, run.v, impulse, held, run.method.h * (1.0 + LATER), LOOKS)
     if cosine >= LEAST:
         return ""
     angle, start, end = math.acos(max(-1.0, cosine)), run.t[int(k)], run.t[int(k) + 1]
@@ -70,3 +75,17 @@ def _too_far(run: Trajectory, m: Model, impulse: Any, what: str) -> str:
         f"{what} {int(c)} turns by {angle:.3g} radian within a step at t = {start:.9g} s: steps are too long for "
         f"this motion, which needs some below {(end - start) * SHARE / angle:.3g} s there"
     )
+
+
+def _held(run: Trajectory) -> Any:
+    """(n, n_c) the impulses of contacts since the state before, without those that have struck in between.
+
+    Of steps that place impacts at their own times; others strike what they press.
+    """
+    if not hasattr(run.method, "order"):
+        return run.impulse
+    log, held = run.impacts, run.impulse.copy()
+    struck = (log.kind == Kind.IMPACT) & (log.before < -STILL * float(np.max(np.abs(run.v))))
+    k = np.searchsorted(run.t, log.time[struck])
+    held[np.minimum(k, len(held) - 1), log.contact[struck]] = 0.0
+    return held

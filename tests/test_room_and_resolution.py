@@ -179,6 +179,29 @@ def test_a_gap_that_has_no_gradient_on_its_obstacle_is_told(method, keep):
         assert ("no gradient where it is met" in run.doubt) is said
 
 
+@pytest.mark.parametrize("method", [Located(1e-2), Located(1e-2, order=4), EventDriven()], ids=repr)
+def test_a_needle_that_is_struck_beside_its_tip_has_a_normal(method):
+    """Its gradient is (-0.02, 1) there, and (-800, 1) a little further along it, where it has turned."""
+
+    def gap(t, q, v, p, out):
+        out[0] = q[1] - math.exp(-((q[0] / 1e-3) ** 2))
+
+    def jacobian(t, q, v, p, out):
+        out[0, 0], out[0, 1] = 2.0 * q[0] / 1e-6 * math.exp(-((q[0] / 1e-3) ** 2)), 1.0
+
+    scene = Scene(
+        LinearSystem(M=np.eye(2)),
+        [1e-8, 2.0],
+        [0.0, -1.0],
+        (0.0, 1.5),
+        Contacts(1, gap, jacobian, restitution=1.0),
+    )
+    run = simulate(scene, method)
+    n = np.array([0.02, 1.0]) / math.hypot(0.02, 1.0)
+    assert np.allclose(run.v[-1], [0.0, -1.0] + 2.0 * n[1] * n, rtol=1e-6)
+    assert run.doubt == ""
+
+
 def test_a_gradient_that_grows_fast_but_is_there_is_not_told():
     def gap(t, q, v, p, out):
         out[0] = math.expm1(100.0 * (q[0] + 0.5))

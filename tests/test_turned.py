@@ -111,6 +111,26 @@ def test_steps_by_a_tolerance_and_events_are_not_asked():
         assert simulate(s, method).doubt == ""
 
 
+@pytest.mark.parametrize("method", [Located(2.5), Located(2.5, order=4)], ids=repr)
+@pytest.mark.parametrize("angle", [1.1, 2.0, 2.8])
+def test_what_flies_from_impact_to_impact_is_not_held_however_far_apart_the_normals_are(method, angle):
+    """A billiard in a circle: chords of one length, each turned by the same angle; no step is too long for a line."""
+    chord = 2.0 * math.sin(0.5 * angle)
+    start = {
+        "q0": [1.0 - 1e-9, 0.0],
+        "v0": [-math.sin(0.5 * angle), math.cos(0.5 * angle)],
+        "t_span": (0.0, 30.0),
+    }
+    run = simulate(
+        Scene(LinearSystem(M=np.eye(2)), contacts=Contacts(1, inside, normal, restitution=1.0), **start),
+        method,
+    )
+    k = np.arange(1, len(run.impacts) + 1)
+    assert len(k) == int(30.0 / chord)
+    assert np.allclose(run.impacts.time, k * chord, atol=1e-6)
+    assert run.doubt == ""
+
+
 def test_what_only_touches_the_obstacle_may_turn():
     """Thrown across the circle it is pressed at one end of a step alone; each impact throws it back."""
     s = Scene(
@@ -157,7 +177,7 @@ def test_the_angle_is_that_in_the_metric_of_the_masses(system):
                 one, other = q[k] / np.linalg.norm(q[k]), q[k + 1] / np.linalg.norm(q[k + 1])
                 W = [x @ np.linalg.solve(M, y) for x, y in ((one, other), (one, one), (other, other))]
                 best = min(best, (W[0] / math.sqrt(W[1] * W[2]), k))
-        cosine, k, c = farthest_turn(looked_at(s), t, q, v, held, 0.15, parts)
+        cosine, k, c = farthest_turn(looked_at(s), t, q, v, held, held, 0.15, parts)
         assert (cosine, k, c) == (pytest.approx(best[0], rel=1e-12), best[1], 0)
 
 
@@ -188,8 +208,9 @@ scene = scenes.CATALOGUE["bowl"].make()
 run = simulate(replace(scene, t_span=(0.0, 1.0)), Located(0.02))
 rows = joint_model(replace(scene, joints=Joints(1, square, radius), q0=[0.6, 0.8], v0=[-0.8, 0.6]))
 for parts in (1, 3, 64):
-    print(*(float(x).hex() for x in farthest_turn(model(scene), run.t, run.q, run.v, run.impulse, 0.021, parts)))
-    print(*(float(x).hex() for x in farthest_turn(rows, run.t, run.q, run.v, None, 0.021, parts)))
+    held = run.impulse, run.impulse, 0.021, parts
+    print(*(float(x).hex() for x in farthest_turn(model(scene), run.t, run.q, run.v, *held)))
+    print(*(float(x).hex() for x in farthest_turn(rows, run.t, run.q, run.v, None, None, 0.021, parts)))
 """
 
 

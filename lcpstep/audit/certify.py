@@ -149,7 +149,8 @@ def halve(p: Pieces, w: Windows, tally: Tally, problem: Any) -> None:
         if problem is not p.problem:  # of a run that has its modes from other forces: only said, not taken
             vain, wrong = wrong, np.zeros(len(w.a), dtype=bool)
         h = w.b - w.a
-        drifted = np.maximum(s.error - s.own, 0.0)  # beside an event the motion counts as it was computed
+        with np.errstate(invalid="ignore"):  # neither is known where a gradient has no bound
+            drifted = np.maximum(s.error - s.own, 0.0)  # beside an event the motion counts as it was computed
         if not good.all():
             good |= at_event(p, w, lower + drifted > -ERRORS * small)
         tally.certified += float(np.sum(h[good]))

@@ -72,14 +72,17 @@ class Curved:
         drifted, near = np.zeros(n), error
         known = None if rough else self.anchors  # most windows do without
         beside = state if known is None else known.errors(w, size)
-        for i in range(self.n_q):
-            g = Interval(G[0][rows, w.c, i], G[1][rows, w.c, i])
-            speed = speed + g * boxes[i].speed
-            error = error + g.size * state[:, i]
-            near = near + g.size * beside[:, i]
-            if self.drift is not None:
-                drifted += g.size * self.drift[w.k, i]
-        slow, computed = ROUNDING * speed.size, error - drifted
+        with np.errstate(
+            invalid="ignore"
+        ):  # a gradient without a bound, as in a disc's centre, tells nothing
+            for i in range(self.n_q):
+                g = Interval(G[0][rows, w.c, i], G[1][rows, w.c, i])
+                speed = speed + g * boxes[i].speed
+                error = error + g.size * state[:, i]
+                near = near + g.size * beside[:, i]
+                if self.drift is not None:
+                    drifted += g.size * self.drift[w.k, i]
+            slow, computed = ROUNDING * speed.size, error - drifted
         error = np.minimum(error, near)
         return Seen(gap.lo, speed.lo, speed.hi, curve.lo, curve.hi, at_a, at_b, error, slow, smooth, computed)
 

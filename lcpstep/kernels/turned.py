@@ -21,10 +21,13 @@ from lcpstep.pointers import Doubles, after
 
 
 @cython.ccall
-def farthest_turn(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float, parts: int) -> Any:
+def farthest_turn(
+    m: Model, t: Any, q: Any, v: Any, impulse: Any, held: Any, longest: float, parts: int
+) -> Any:
     """Which row turns farthest in steps no longer than that at both of whose ends it is pressed, and where.
 
     impulse : (n, n_c)   of every row since the state before; None where all are pressed always, as joints are
+    held : (n, n_c)   the same without that of rows which were open until then; of no use without impulses
 
     Returns
     -------
@@ -33,7 +36,7 @@ def farthest_turn(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float
     n, steps, always, found = m.n_q, len(t) - 1, impulse is None, np.array([1.0, 0.0, 0.0])
     space = np.zeros((2 * m.n_q + 1) * m.n_c + (m.n_q + 1) * m.n_q)
     at, x, rates, work, out = doubles(t), doubles(q), doubles(v), doubles(space), doubles(found)
-    pushed = work if always else doubles(impulse)
+    pushed, kept = (work, work) if always else (doubles(impulse), doubles(held))
     with cython.nogil:
         for i in range(parts):
             fastest, best, x_t = -1.0, -1, after(rates, i * steps // parts * n)
@@ -43,16 +46,16 @@ def farthest_turn(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float
                 speed = product(x_t, x_t, 0, n)
                 if before + speed > fastest and 0.0 < at[k + 1] - at[k] <= longest:
                     for c in range(m.n_c):
-                        if always or pressed(pushed, k * m.n_c + c, m.n_c):
+                        if always or pressed(pushed, kept, k * m.n_c + c, m.n_c):
                             fastest, best = before + speed, k
             if best >= 0:
-                look(m, best, at, x, rates, pushed, always, work, out)
+                look(m, best, at, x, rates, pushed, kept, always, work, out)
     return found
 
 
-def pressed(impulse: Doubles, i: int, n_c: int) -> bool:
+def pressed(impulse: Doubles, held: Doubles, i: int, n_c: int) -> bool:
     """Whether a row presses at both ends of a step; i : of its impulse at the start."""
-    return impulse[i] > 0.0 and impulse[i + n_c] > 0.0
+    return impulse[i] > 0.0 and held[i + n_c] > 0.0
 
 
 def look(
@@ -62,6 +65,7 @@ def look(
     q: Doubles,
     v: Doubles,
     impulse: Doubles,
+    held: Doubles,
     always: bool,
     work: Doubles,
     out: Doubles,
@@ -75,7 +79,7 @@ def look(
     if not factor_mass(m, t[k], x, x_t, M):
         return
     for c in range(n_c):
-        if always or pressed(impulse, k * n_c + c, n_c):
+        if always or pressed(impulse, held, k * n_c + c, n_c):
             before, later = after(start, c * n), after(end, c * n)
             size = sqrt(form(m, M, y, before, before)) * sqrt(form(m, M, y, later, later))
             along = form(m, M, y, before, later)

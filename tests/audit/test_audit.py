@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from benchmarks.audit.cases import KINDS, bell, blind, ground, ground_bias, ground_q, swing
-from lagrangian import Contacts, Scene, System, scenes
+from lagrangian import Contacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, simulate
 from lcpstep.audit import audit
 from lcpstep.errors import LcpStepError
@@ -34,6 +34,25 @@ def test_steps_with_located_impacts_are_certified(method):
         answer = audit(simulate(scene, replace(method, h=1e-3)))
         assert not answer.missed
         assert answer.certified == answer.flights > 0
+
+
+@pytest.mark.parametrize("method", [EventDriven(1e-5, 1e-5), Located(1e-2)], ids=repr)
+def test_a_disc_whose_gap_has_no_gradient_in_its_centre_is_passed_without_a_word_of_numpy(method):
+    """A line that passes 3.5e-4 m beside a disc of 5e-6 m: windows about it hold the centre as well."""
+
+    def gap(t, q, v, p, out):
+        out[0] = math.hypot(q[0] - 0.5, q[1]) - 5e-6
+
+    def jacobian(t, q, v, p, out):
+        far = math.hypot(q[0] - 0.5, q[1])
+        out[0, 0], out[0, 1] = (q[0] - 0.5) / far, q[1] / far
+
+    scene = Scene(
+        LinearSystem(M=np.eye(2)), [0.0, -0.4995], [1.0, 1.0], (0.0, 1.0), Contacts(1, gap, jacobian)
+    )
+    run = simulate(scene, replace(method, audit=True))
+    assert len(run.impacts) == 0
+    assert not run.audit.missed
 
 
 @pytest.mark.parametrize("width", [1e-2, 1e-3, 1e-4])

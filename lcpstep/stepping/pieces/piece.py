@@ -118,10 +118,20 @@ def fitted(m: Model, plan: Plan, w: Work, t: float, rest: float) -> None:
     look_along(w, rest)
     gaps(m, t + rest, w.q_try, w.v, w.gap_try)
     for c in range(w.n_c):
-        if from_ground(plan, w, c):
+        grounded = from_ground(plan, w, c)
+        if grounded:
             w.half[c] = 0.5 * (product(w.G, w.a, c, w.n_q) + w.bias[c])
-        else:
+        if not grounded or comes_back(plan, w, c, rest):
             w.half[c] = (w.gap_try[c] - w.gap[c] - rest * w.rate[c]) / (rest * rest)
+
+
+def comes_back(plan: Plan, w: Work, c: int, rest: float) -> bool:
+    """Whether a gap that has just been left is closed at the end, where its acceleration at the base says it is open.
+
+    As where a body crosses a round obstacle from side to side. A low hop is left to the end of the piece.
+    """
+    end, rise = w.gap_try[c], rest * w.rate[c]
+    return end < -plan.slack and rise > -end and rise + rest * rest * w.half[c] > 0.0
 
 
 def needs_bias(plan: Plan, w: Work) -> bool:
