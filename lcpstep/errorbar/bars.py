@@ -58,7 +58,8 @@ class ErrorBar:
         the two velocities has jumped already, `left_out`; `l1` [m] does not
     energy : Bar [J], of the kinetic energy and that of constant stiffness and forces; `sup` as for velocities
     impact_time, impact_impulse : (n_events,)   of every row of the impact log [s], [N s]; nan for what is no impact,
-        has no partner, is weak (its jump below a fiftieth of the largest), or comes after `until`
+        has no partner, is weak (its jump below a fiftieth of the largest), follows another of its contact faster than
+        the run resolves (that one has the error of the impulse of all), or comes after `until`
     until : end of the bar [s]
     reason : why it ends there, "" for a bar over the whole run
     horizon : time beyond which the run does not predict the motion: its error is a quarter of the range of the

@@ -193,6 +193,7 @@ def _of_impacts(run: Trajectory, pairs: Pairs, until: float) -> tuple[Array, Arr
     if len(pairs.rows):
         of_row = pairs.of_row
         known = ((pairs.stop <= until) & ~pairs.weak)[of_row]
+        known[1:] &= of_row[1:] != of_row[:-1]  # of the others of a blow the companion's are not told apart
         rows, pair = pairs.rows[known], of_row[known]
         times[rows] = pairs.time[pair] + ROUNDING * _latest(run)
         impulses[rows] = pairs.impulse[pair] + ROUNDING * np.asarray(run.impacts)["impulse"][rows]
