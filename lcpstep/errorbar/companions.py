@@ -42,6 +42,7 @@ from lcpstep.trajectory import Trajectory
 KNOWN = (Moreau, Located, EventDriven)  # methods that have companions
 TIGHT = 1e-13
 SMALL = 1e-2  # size of a motion below which an absolute tolerance is as many times smaller [m]
+MODERATE = 1.0  # the same beside event-driven runs, whose own errors may be far below that [m]
 NOTHING = 1e-12  # size of a motion that is none [m]
 FIRST = {1: 1e-8, 2: 1e-10}  # tolerance by the order of steps, that their error is mostly large beside
 FAR = 0.1  # the same of event-driven runs that are tighter than usual
@@ -93,10 +94,10 @@ def best(run: Trajectory) -> EventDriven:
     return EventDriven(TIGHT, _absolute(run))
 
 
-def _absolute(run: Trajectory) -> float:
+def _absolute(run: Trajectory, small: float = SMALL) -> float:
     """The tightest absolute tolerance, which beside a small motion has to be small too [m]."""
     size = float(np.max(np.abs(run.q)))
-    return TIGHT * min(1.0, size / SMALL) if size > NOTHING else TIGHT
+    return TIGHT * min(1.0, size / small) if size > NOTHING else TIGHT
 
 
 def companions(run: Trajectory, error: float | None = None) -> Iterator[tuple[Companion, ...]]:
@@ -130,7 +131,8 @@ def _of_event_driven(method: EventDriven, scene: Scene, run: Trajectory) -> Iter
     # As tight as may be, the absolute one tighter: with that which the run has, a companion strikes the same together
     measure = Companion(
         EventDriven(
-            max(LEAST_TOLERANCE, min(TIGHT, method.rtol * FAR)), min(_absolute(run), method.atol * FAR)
+            max(LEAST_TOLERANCE, min(TIGHT, method.rtol * FAR)),
+            min(_absolute(run, MODERATE), method.atol * FAR),
         )
     )
     for pieces in PIECES:

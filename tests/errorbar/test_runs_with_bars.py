@@ -162,3 +162,19 @@ def test_a_run_that_ends_before_the_first_state_asked_for_has_a_bar_that_says_so
     assert (run.error.reason, run.error.until) == ("no state was kept", 0.0)
     assert run.error.position.sup == math.inf
     assert "no state was kept" in str(run.error)
+
+
+@pytest.mark.parametrize("omega", [1.8, 2.0, 2.5, 4.0])
+def test_a_small_motion_by_the_longest_steps_is_not_held_against_a_run_of_the_same_steps(omega):
+    """A millimetre, in steps that the span alone keeps short: their error is far below every absolute tolerance."""
+
+    def pull(t, q, v, p, out):
+        out[0] = -p[0] * q[0]
+
+    run = simulate(
+        Scene(System(1, 1.0, pull), 1e-3, 0.0, (0.0, 5.0), p=[omega**2]), EventDriven(), error=True
+    )
+    t = np.linspace(0.0, 5.0, 5001)
+    off = np.max(np.abs(run.at(t)[0][:, 0] - 1e-3 * np.cos(omega * t)))
+    assert off > 1e-16
+    assert 0.5 < off / run.error.position.sup < 2.0
