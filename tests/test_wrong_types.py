@@ -17,6 +17,7 @@ from lagrangian import (
     scenes,
 )
 from lcpstep import EventDriven, Located, Moreau, continued, energy, load, simulate, solve_lcp, study
+from lcpstep.accuracy.compare import compare
 from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.basins import basins
 from lcpstep.analysis.orbits import periodic_orbit
@@ -58,6 +59,10 @@ def scene(**more):
         (lambda: study(BALL, [Moreau()], h=1e-3), "h: expected numbers in a list"),
         (lambda: study(BALL, [Moreau()], spread=1), "spread: expected numbers in a list"),
         (lambda: study(BALL, [Moreau()], repeats="a"), "repeats: expected at least 1"),
+        (lambda: study(BALL, {"a": Moreau()}), "methods: a: expected methods in a list"),
+        (lambda: study(BALL, [Moreau()], horizon="a"), "horizon: expected"),
+        (lambda: study(BALL, [Moreau()], horizon=float("nan")), "horizon: expected"),
+        (lambda: compare(3, Moreau(), EventDriven()), "scene: expected a Scene"),
         (lambda: study(BALL, [Moreau()], repeats=1.5), "repeats: expected at least 1"),
         (lambda: energy(3), "trajectory: expected a Trajectory"),
         (lambda: continued(3, t_end=1.0), "run: expected a Trajectory"),

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Scene
+from lagrangian import Scene, checks
 from lcpstep.simulation import Method, fitted, simulate
 from lcpstep.trajectory import Kind, Trajectory
 
@@ -75,6 +75,7 @@ def compare(
     ------
     Everything that `lcpstep.simulate` raises.
     """
+    checks.instance("scene", scene, Scene)
     exact = timed(scene, reference, progress)
     fast = timed(scene, method, progress)
     t = fast.trajectory.t

@@ -27,6 +27,9 @@ TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)  # the same for methods with a tolerance
 def curves_of(methods: Any) -> dict[str, list[Method]]:
     """Methods by curve, each coarse to fine."""
     if isinstance(methods, Mapping):
+        for name, of_it in methods.items():
+            if not isinstance(of_it, Iterable):
+                raise TypeError(f"methods: {name}: expected methods in a list, got {of_it!r}")
         named = {str(name): list(of_it) for name, of_it in methods.items()}
     else:
         named = {}

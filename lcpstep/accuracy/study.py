@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from lagrangian import Scene
+from lagrangian import Scene, checks
 from lcpstep.accuracy.dials import dial
 from lcpstep.accuracy.environment import machine, versions
 from lcpstep.accuracy.errors import MEASURES, units
@@ -97,6 +97,8 @@ def study(
         raise ValueError(f"repeats: expected at least 1, got {repeats!r}")
     if not (len(spread) and all(math.isfinite(s) and s > 0.0 for s in spread)):
         raise ValueError(f"spread: expected positive factors, got {spread!r}")
+    if horizon is not None and horizon != math.inf:
+        checks.number("horizon", horizon)
     if save is not None and Path(save).suffix not in (".json", ".csv"):
         raise ValueError(f"save: expected a name that ends in .json or .csv, got {str(save)!r}")
     notes: list[str] = []
