@@ -4,7 +4,8 @@
 
 Such a gap is never negative, so that whatever moves is admissible, and no method finds an impact: bodies go through
 one another. The gradients at some states tell on which side a motion is; where one has turned about, the states are
-sought between which it has, and the gap on the straight line between them.
+sought between which it has, and the gap on the straight line between them. A sharp tip that is flown over at next to
+no height turns about, too, but there is an inside below it.
 """
 
 from __future__ import annotations
@@ -82,10 +83,24 @@ def _zero(m: Model, run: Trajectory, k: int, c: int) -> float | None:
     for _ in range(HALVINGS):
         share = 0.5 * (low + high)
         at, q = np.array([t + share * (later - t)]), (start + share * (end - start))[None]
-        if abs(gaps_at(m, at, q)[0, c]) <= least:  # where there may be no gradient
-            return float(at[0])
+        gap = float(gaps_at(m, at, q)[0, c])
+        if abs(gap) <= least and (gap < 0.0 or not _has_inside(m, at, q, c, first + last, end - start)):
+            return float(at[0])  # there may be no gradient there
         if _gradients(m, at, q)[0, c] @ first > 0.0:
             low = share
         else:
             high = share
     return None
+
+
+def _has_inside(m: Model, at: Array, q: Array, c: int, out: Array, way: Array) -> bool:
+    """Whether a gap is negative somewhere straight below a place; `out`: gradients of both sides together.
+
+    As under the tip of a needle that is only just flown over. The two sides of |x| have none together.
+    """
+    size = float(np.linalg.norm(out))
+    if not size > 0.0:
+        return False
+    far = float(np.linalg.norm(way)) / size * 0.5 ** np.arange(HALVINGS)
+    below = np.ascontiguousarray(q - far[:, None] * out)
+    return bool(np.min(gaps_at(m, np.repeat(at, HALVINGS), below)[:, c]) < 0.0)

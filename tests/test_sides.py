@@ -85,3 +85,26 @@ def test_what_goes_round_in_a_bowl_is_not_told(method):
     run = simulate(scene, method)
     assert np.linalg.norm(run.q, axis=1) == pytest.approx(1.0, abs=1e-6)
     assert run.doubt == ""
+
+
+def needle(t, q, v, p, out):
+    out[0] = q[1] - p[0] * max(0.0, 1.0 - abs(q[0]) / p[1])
+
+
+def needle_q(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 0.0, 1.0
+    if abs(q[0]) < p[1]:
+        out[0, 0] = p[0] / p[1] * (1.0 if q[0] > 0.0 else -1.0)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=IDS)
+@pytest.mark.parametrize("height", [1e-6, 1e-8, 1e-10])
+def test_a_sharp_tip_that_is_flown_over_at_next_to_no_height_has_an_inside(height, method):
+    scene = Scene(
+        LinearSystem(np.eye(2)), [-1.123, 0.5], [1.0, 0.1], (0.0, 2.0), Contacts(1, needle, needle_q),
+        p=[0.6123 - height, 0.05],
+    )  # fmt: skip
+    run = simulate(scene, method)
+    assert len(run.impacts) == 0
+    assert run.q[-1] == pytest.approx([0.877, 0.7])
+    assert run.doubt == ""
