@@ -26,7 +26,7 @@ from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.quadratic import first_zero
 from lcpstep.kernels.vectors import copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, max, min
-from lcpstep.stepping.rubbing.let_go import hops, is_motion, widen_until_decided
+from lcpstep.stepping.rubbing.let_go import hops, is_motion, rises, widen_until_decided
 from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
 NOWHERE = -1.0  # in place of a time: the guard does not act, its polynomial was wrong
@@ -261,9 +261,9 @@ def interrupt(s: Strides, t: float, tau: float) -> None:
 def locate(s: Strides, g: int, h: float) -> float:
     """Time from now at which guard g acts, the step of that length being the last one made; or NOWHERE.
 
-    One that begins within its band acts where it is seen below zero, beyond it, of a force, where it is as far again.
+    One that begins within its band, and below zero, acts where it is as far again.
     """
-    zero = 0.0 if s.armed[g] == 1 or is_motion(s, g) else min(0.0, 2.0 * s.begin_value[g])
+    zero = 0.0 if s.armed[g] == 1 else min(0.0, 2.0 * s.begin_value[g])
     t0, tau, slope, crossed = s.clock.t0, s.found * h, s.slope, s.end_value[g] < zero
     if tau <= 0.0:
         return 0.0
@@ -285,4 +285,6 @@ def locate(s: Strides, g: int, h: float) -> float:
             if not (s.step(t0, tau) and read_guards(s, t0 + tau, s.y_new)):
                 return NOWHERE
             break
+    if rises(s, g):
+        return NOWHERE
     return tau if crossed or (s.value[g] <= s.band[g] and s.armed[g] == 1) else NOWHERE

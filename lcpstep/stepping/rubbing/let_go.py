@@ -12,7 +12,8 @@ import cython
 from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.rows.contacts import rubs
-from lcpstep.pointers import abs, max
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import abs, after, max
 from lcpstep.stepping.rubbing.strides import Strides
 
 
@@ -28,6 +29,20 @@ def hops(s: Strides, c: int) -> bool:
     """Whether a hop of contact c begins at the base, or a low one goes on there."""
     g = GUARDS * c
     return s.mode[c] == OPEN and s.armed[g] == 0 and (s.begin_slope[g] > s.terms[c] or s.carried[c] == 1)
+
+
+def rises(s: Strides, g: int) -> bool:
+    """Whether guard g is a gap let go that rises at the end of the step just made, whose rates are known.
+
+    A step of order two, off by the cube of its size, may lead it below its surface all the same. What has no speed
+    but that of rounding rises by its acceleration.
+    """
+    c = g // GUARDS
+    if s.armed[g] == 1 or g % GUARDS > 0 or s.mode[c] != OPEN:
+        return False
+    i, none = s.n_j + c, s.terms[c]
+    u = product(s.R, after(s.y_new, s.n_q), i, s.n_q) + s.rate[i]
+    return u > (-none if s.begin_bend[c] > 0.0 else none)
 
 
 def widen_until_decided(s: Strides, g: int, h: float) -> None:
