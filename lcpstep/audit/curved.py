@@ -72,9 +72,8 @@ class Curved:
         drifted, near = np.zeros(n), error
         known = None if rough else self.anchors  # most windows do without
         beside = state if known is None else known.errors(w, size)
-        with np.errstate(
-            invalid="ignore"
-        ):  # a gradient without a bound, as in a disc's centre, tells nothing
+        # A gradient without a bound, as in a disc's centre, tells nothing
+        with np.errstate(invalid="ignore"):
             for i in range(self.n_q):
                 g = Interval(G[0][rows, w.c, i], G[1][rows, w.c, i])
                 speed = speed + g * boxes[i].speed
