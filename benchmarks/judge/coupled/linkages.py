@@ -58,21 +58,25 @@ def rates(t, q, v, p, out):
 def normals(t, q, v, p, out):
     n = len(q)
     out[:] = 0.0
-    for k in range(n):
-        for i in range(k + 1):
-            if k > 0:
-                out[k - 1, i] = p[n + i] * np.sin(q[i])
-        out[n - 1, k], out[n, k] = p[n + k] * np.cos(q[k]), -p[n + k] * np.cos(q[k])
+    for i in range(n):
+        up, along = p[n + i] * np.sin(q[i]), p[n + i] * np.cos(q[i])
+        lead(out, i, up)
+        out[n - 1, i], out[n, i] = along, -along
 
 
 def tangents(t, q, v, p, out):
     n = len(q)
     out[:] = 0.0
-    for k in range(n):
-        for i in range(k + 1):
-            if k > 0:
-                out[k - 1, i] = p[n + i] * np.cos(q[i])
-        out[n - 1, k] = out[n, k] = p[n + k] * np.sin(q[k])
+    for i in range(n):
+        up, along = p[n + i] * np.sin(q[i]), p[n + i] * np.cos(q[i])
+        lead(out, i, along)
+        out[n - 1, i] = out[n, i] = up
+
+
+def lead(out, i, share):
+    """Link i moves all joints from its lower end on, each of them by as much; the first joint meets nothing."""
+    for k in range(max(i, 1), out.shape[1]):
+        out[k - 1, i] = share
 
 
 def linkage(seed):
