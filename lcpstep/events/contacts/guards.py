@@ -20,7 +20,7 @@ from lcpstep.events.contacts.equations import (
 )
 from lcpstep.events.contacts.held import right_hand_side
 from lcpstep.events.contacts.hops import begin_hops, first_landing
-from lcpstep.events.contacts.loose import forget_strays, notice
+from lcpstep.events.contacts.loose import forget, notice
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.hybrid.roots import DEGREE, NONE, SAMPLES, convert, first_rise, taylor
 from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
@@ -126,42 +126,17 @@ def depth(s: Rubbing, c: int) -> float:
 
 def first_event(s: Rubbing, h: float) -> int:
     """The first guard that acts within the step of size h, -1 or UNKNOWN; when, into `found`, as a fraction of h."""
-    n, parts, part = GUARDS * s.n_c, 1, 0
-    s.guard, s.found = -1, 2.0
-    lands = first_landing(s)
-    forget_strays(s)
+    part, parts, lands = 0, 1, first_landing(s)
+    forget(s)
     if lands < 0 and s.plain and stays_clear(s, h):
         return -1
     while part < parts:
         a, b = part * 1.0 / parts, (part + 1) * 1.0 / parts
         if not sample(s, h, a, b):
             return UNKNOWN
-        fine = True
-        for g in range(n):
-            if not has(s, g):
-                continue
-            copy(s.scan.sample, after(s.samples, g * SAMPLES), SAMPLES)
-            error, most = convert(s.scan), largest(s.scan.sample, 0.0, SAMPLES)
-            if error > RESOLVED * most + s.band[g]:
-                # Of a gap that a shorter part changes by all of it
-                hidden = parts * NOISE * (abs(s.clock.t0) + h) / h
-                turns = s.mode[g // GUARDS] == OPEN and error > (UNSEEN + hidden) * most
-                if parts < (MOST_PARTS if turns else PARTS):
-                    fine = False
-                    break
-                # Beside an edge a polynomial swings below zero, not its samples
-                if turns:
-                    copy(s.scan.c, s.scan.sample, DEGREE + 1)
-            place = first_fall(s, g)
-            when, risen = a + (b - a) * place, place != NONE and rises(s, g, place)
-            if place != NONE and when < s.found:
-                s.guard, s.found, s.risen = g, when, risen
-                _, slope, _ = taylor(s.scan.c, place, s.scan.half)
-                s.slope = slope * parts / h
-        if not fine:  # the same place again, more finely
+        if not search_part(s, h, a, b, parts):  # the same place again, more finely
             part, parts = 2 * part, 2 * parts
-            s.guard, s.found = -1, 2.0
-            forget_strays(s)
+            forget(s)
             continue
         if lands >= 0 and s.lands[lands] <= b * h and (s.guard < 0 or s.lands[lands] <= s.found * h):
             s.guard, s.found, s.risen = GUARDS * lands, s.lands[lands] / h, True
@@ -170,6 +145,40 @@ def first_event(s: Rubbing, h: float) -> int:
         arm(s)
         part += 1
     return -1
+
+
+def search_part(s: Rubbing, h: float, a: float, b: float, parts: int) -> bool:
+    """Find the first guard that acts in the part sampled, from a to b of the step; False where it is too long."""
+    for g in range(GUARDS * s.n_c):
+        if not has(s, g):
+            continue
+        if not fits(s, h, g, parts):
+            return False
+        place = first_fall(s, g)
+        when, risen = a + (b - a) * place, place != NONE and rises(s, g, place)
+        if place != NONE and when < s.found:
+            s.guard, s.found, s.risen = g, when, risen
+            _, slope, _ = taylor(s.scan.c, place, s.scan.half)
+            s.slope = slope * parts / h
+    return True
+
+
+def fits(s: Rubbing, h: float, g: int, parts: int) -> bool:
+    """Whether guard g is the polynomial of its samples, or close to it in one of so many parts, at most.
+
+    In these the samples of a gap stand for it: beside an edge a polynomial swings below zero, not they.
+    """
+    copy(s.scan.sample, after(s.samples, g * SAMPLES), SAMPLES)
+    error, most = convert(s.scan), largest(s.scan.sample, 0.0, SAMPLES)
+    if error <= RESOLVED * most + s.band[g]:
+        return True
+    hidden = parts * NOISE * (abs(s.clock.t0) + h) / h  # of a gap that a shorter part changes by all of it
+    turns = s.mode[g // GUARDS] == OPEN and error > (UNSEEN + hidden) * most
+    if parts < (MOST_PARTS if turns else PARTS):
+        return False
+    if turns:
+        copy(s.scan.c, s.scan.sample, DEGREE + 1)
+    return True
 
 
 def has(s: Rubbing, g: int) -> bool:

@@ -38,8 +38,9 @@ def find_loose(s: Rubbing) -> None:
             s.stray[c] = 0.0
 
 
-def forget_strays(s: Rubbing) -> None:
-    """All rows are at rest where a step begins, as far as has been seen."""
+def forget(s: Rubbing) -> None:
+    """No guard acts within the step, and all rows are at rest where it begins, as far as has been seen."""
+    s.guard, s.found = -1, 2.0
     s.kept_to, s.shown, s.delay = 0.0, 2.0, 0.0
 
 

@@ -22,7 +22,7 @@ from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.impact import forget_terms
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import find_closed
-from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
+from lcpstep.events.hybrid.locate import UNKNOWN, find, locate, turns_back
 from lcpstep.events.hybrid.loop import MAX_STALLED, enter, leave
 from lcpstep.events.hybrid.state import Motion
 from lcpstep.events.rows.contacts import gap_tolerance
@@ -59,28 +59,28 @@ class Watched(Motion):
 def watch(s: Rubbing, h: float, end: float) -> int:
     """The first guard of modes that acts within the share `end` of the step of size h, into `watch`; a status.
 
-    When, as a share of h, into `found`; how fast its value rises, into `slope`.
+    When, as a share of h, into `found`.
     """
     s.watch.culprit = -1
     if not end > 0.0:
         return DONE
     s.watch.now, s.watch.t_end = s.clock.t0, min(s.clock.t_end, s.clock.high)
-    k, at, slope, curvature = find(s.watch, h, end)
+    k = find(s.watch, h, end)
     if k == UNKNOWN:
         return NOT_FINITE
     if k < 0:
         return DONE
     s.watch.culprit, s.watch.armed[k] = k, s.watch.was_armed
-    if s.watch.was_armed and slope * slope <= -4.0 * s.watch.band[k] * curvature:
-        s.watch.now = s.clock.t0 + at * h
+    if turns_back(s.watch):
+        s.watch.now = s.clock.t0 + s.watch.place * h
         return NOT_TRANSVERSAL
-    s.found, s.slope = at, slope
+    s.found = s.watch.place
     return DONE
 
 
 def reach_guard(s: Rubbing, h: float) -> float:
     """The time from the base at which the guard found acts; the step is repeated up to it."""
-    tau = locate(s.watch, s.watch.culprit, h, s.found, s.slope)
+    tau = locate(s.watch, h)
     if tau > 0.0:
         s.complete(s.clock.t0, tau)
     return tau

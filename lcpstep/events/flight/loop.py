@@ -89,57 +89,71 @@ def begin(s: Flight) -> bool:
 
 
 def fly(s: Flight) -> bool:
-    """Up to the next contact, or to the end of the interval; False where the motion is not finite.
-
-    The interval is a long stride where the contact stays clear of it, and one of the scan elsewhere.
-    """
-    short_end = min(min(s.t_end, s.high), s.now + s.scan)
-    end = min(min(s.t_end, s.high), s.now + STRIDE * s.scan)
-    a, b = s.now - s.t0, end - s.t0
-    tau, u = hop_end(s, a, b)
-    is_hop = tau != NONE
-    if not is_hop and is_low(s, a):
+    """Up to the next contact, or to the end of an interval; False where the motion is not finite."""
+    a, end = s.now - s.t0, min(min(s.t_end, s.high), s.now + STRIDE * s.scan)
+    tau, u = hop_end(s, a, end - s.t0)
+    if tau != NONE:
+        go_to(s, tau, end)
+        strike(s, min(u, 0.0))
+        return True
+    if is_low(s, a):
         return skim(s)
-    if not is_hop:
-        if s.clear < inf and leap(s):
-            return True
+    if s.clear < inf and leap(s):
+        return True
+    return search(s, a, end)
+
+
+def search(s: Flight, a: float, end: float) -> bool:
+    """`fly` from a on by a long stride where the contact stays clear of it, and by one of the scan elsewhere."""
+    short_end = min(min(s.t_end, s.high), s.now + s.scan)
+    b = end - s.t0
+    g, u, alpha = free(s, b)
+    is_near = suspect(s, b - a, g, u, alpha)
+    if is_near and end > short_end:
+        end, b = short_end, short_end - s.t0
         g, u, alpha = free(s, b)
         is_near = suspect(s, b - a, g, u, alpha)
-        if is_near and end > short_end:
-            end, b = short_end, short_end - s.t0
-            g, u, alpha = free(s, b)
-            is_near = suspect(s, b - a, g, u, alpha)
-        if not finite(g, u, alpha):
-            free(s, a)
-            return False
-        if is_near and s.contact:
-            tau = first_contact(s, a, b, g, u, alpha)
-            if tau == NONE and s.g <= 0.0 and g < 0.0:
-                # It seemed to open, by less than rounding: it is closed, for this interval at least
-                s.hold = end
-                settle_again(s)
-                return True
-        if tau == NONE:
-            s.g, s.u, s.alpha = g, u, alpha
-            s.peak = max(s.peak, abs(alpha))
-            pass_end(s, end)
+    if not finite(g, u, alpha):
+        free(s, a)
+        return False
+    if is_near and s.contact:
+        tau = first_contact(s, a, b, g, u, alpha)
+        if tau != NONE:
+            return touch(s, a, tau, end)
+        if s.g <= 0.0 and g < 0.0:
+            # It seemed to open, by less than rounding: it is closed, for this interval at least
+            s.hold = end
+            settle_again(s)
             return True
-        tau, u, alpha = polish(s, tau)
-        if not finite(0.0, u, alpha):
-            free(s, a)
-            return False
-    t = min(s.after(tau), end)
-    keep_times(s, t, False)
-    s.now = t
-    if is_hop or -u > ON_THE_SURFACE * max(1.0, abs(s.v[0])):
+    s.g, s.u, s.alpha = g, u, alpha
+    s.peak = max(s.peak, abs(alpha))
+    pass_end(s, end)
+    return True
+
+
+def touch(s: Flight, a: float, tau: float, end: float) -> bool:
+    """Contact near tau, after a and by the end: an impact, or a touch without one; False where it is not finite."""
+    tau, u, alpha = polish(s, tau)
+    if not finite(0.0, u, alpha):
+        free(s, a)
+        return False
+    go_to(s, tau, end)
+    if -u > ON_THE_SURFACE * max(1.0, abs(s.v[0])):
         strike(s, min(u, 0.0))
-    elif tau <= a:  # a touch at the very time of the last event
+    elif tau <= a:  # at the very time of the last event
         s.hold = end
         settle_again(s)
-    else:  # a touch without impact
+    else:
         settle(s, 0.0)
         keep_event(s)
     return True
+
+
+def go_to(s: Flight, tau: float, end: float) -> None:
+    """To the time tau from the base on, or to the end, past the times to keep; the state there is at hand."""
+    t = min(s.after(tau), end)
+    keep_times(s, t, False)
+    s.now = t
 
 
 def strike(s: Flight, u: float) -> None:
@@ -166,11 +180,9 @@ def skim(s: Flight) -> bool:
         if s.record.is_due(s.tally.steps):
             keep(s, t)
         return True
-    t = min(s.after(tau), border)
-    keep_times(s, t, False)
-    s.now = t
-    if tau <= UNSEEN * abs(t) and s.g0 == 0.0:
-        s.hold = t + h
+    go_to(s, tau, border)
+    if tau <= UNSEEN * abs(s.now) and s.g0 == 0.0:
+        s.hold = s.now + h
         settle_again(s)
     else:
         strike(s, min(u, 0.0))

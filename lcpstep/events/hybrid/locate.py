@@ -16,6 +16,7 @@ from lcpstep.kernels.vectors import finite, largest
 from lcpstep.pointers import abs, after, max, min, nan
 
 UNKNOWN = -2  # in place of a guard
+SEARCHED, TOO_LONG = 0, 1  # a part of a step
 PARTS = 64  # of a step, at most, in which guards are polynomials
 FINEST = 2**14  # the same where one that is none, by a kink, seems to act
 RESOLVED = 1e-10  # difference of guard and polynomial, relative to its largest value
@@ -24,53 +25,65 @@ FAR = 0.01  # of a step: the secants have lost the guard
 JUMP = 1e-4  # of a guard at its root, relative to its slope over the step
 
 
-def find(s: Motion, h: float, share: float) -> tuple[int, float, float, float]:
-    """The first guard that acts within this share of the step: guard, fraction of the step, slope, curvature.
+def find(s: Motion, h: float, share: float) -> int:
+    """The first guard that acts within this share of the step, -1 or UNKNOWN; where and how, into `acting` and so on.
 
-    The guard is -1 where none acts, UNKNOWN where one is not finite.
+    Parts too long for the guards are halved, and put together again once these are past.
     """
-    first, end, parts = s.m.first[s.mode], s.m.first[s.mode + 1], 1
-    found, at, slope, curvature = -1, 2.0, 0.0, 0.0
-    part = 0
-    while part < parts and first < end:
+    part, parts = 0, 1
+    s.acting, s.place = -1, 2.0
+    while part < parts and s.m.first[s.mode] < s.m.first[s.mode + 1]:
         a, b = share * part / parts, share * (part + 1) / parts
         for j in range(SAMPLES):
             s.at(a + (b - a) * s.scan.points[j], after(s.states, j * s.n))
-        fine = True
-        for k in range(first, end):
-            sample(s, k, h, a, b)
-            error = convert(s.scan)
-            known = finite(s.scan.sample, SAMPLES)
-            fits = known and error <= RESOLVED * largest(s.scan.sample, 0.0, SAMPLES) + s.band[k]
-            if not fits and parts < PARTS:
-                fine = False
-                break
-            if not known:
-                return UNKNOWN, a, 0.0, 0.0
-            place, armed = first_action(s, k)
-            if place != NONE and not fits and parts < FINEST:
-                fine = False
-                break
-            if place != NONE and not fits and not is_sampled(s, k, place):
-                continue
-            if place != NONE and a + (b - a) * place < at:
-                found, at = k, a + (b - a) * place
-                _, slope, curvature = taylor(s.scan.c, place, s.scan.half)
-                # A jump is as steep as the parts are fine
-                per_step = (parts if fits else min(parts, PARTS)) / share
-                slope, curvature = slope * per_step, curvature * per_step * per_step
-                s.event_at, s.was_armed = 0.0 if armed else s.band[k], armed
-        if not fine:  # the same place again, more finely
+        code = search_part(s, h, a, b, parts, share)
+        if code == UNKNOWN:
+            return UNKNOWN
+        if code == TOO_LONG:  # the same place again, more finely
             part, parts = 2 * part, 2 * parts
-            found, at = -1, 2.0
+            s.acting, s.place = -1, 2.0
             continue
-        if found >= 0:
-            return found, at, slope, curvature
+        if s.acting >= 0:
+            return s.acting
         arm(s, h, a, b)
         part += 1
         while part % 2 == 0 and part < parts:
             part, parts = part // 2, parts // 2
-    return found, at, slope, curvature
+    return -1
+
+
+def search_part(s: Motion, h: float, a: float, b: float, parts: int, share: float) -> int:
+    """Find the first guard that acts in the part from a to b, one of so many of this share of the step.
+
+    SEARCHED, TOO_LONG where a guard needs shorter parts, or UNKNOWN.
+    """
+    for k in range(s.m.first[s.mode], s.m.first[s.mode + 1]):
+        sample(s, k, h, a, b)
+        error, known = convert(s.scan), finite(s.scan.sample, SAMPLES)
+        fits = known and error <= RESOLVED * largest(s.scan.sample, 0.0, SAMPLES) + s.band[k]
+        if not fits and parts < PARTS:
+            return TOO_LONG
+        if not known:
+            return UNKNOWN
+        place, armed = first_action(s, k)
+        if place != NONE and not fits:
+            if parts < FINEST:
+                return TOO_LONG
+            if not is_sampled(s, k, place):
+                continue
+        if place != NONE and a + (b - a) * place < s.place:
+            s.acting, s.place = k, a + (b - a) * place
+            _, slope, curvature = taylor(s.scan.c, place, s.scan.half)
+            # A jump is as steep as the parts are fine
+            per_step = (parts if fits else min(parts, PARTS)) / share
+            s.slope, s.curvature = slope * per_step, curvature * per_step * per_step
+            s.event_at, s.was_armed = 0.0 if armed else s.band[k], armed
+    return SEARCHED
+
+
+def turns_back(s: Motion) -> bool:
+    """Whether the guard found, by its slope and curvature, may turn back within its band past zero."""
+    return s.was_armed and s.slope * s.slope <= -4.0 * s.band[s.acting] * s.curvature
 
 
 def is_sampled(s: Motion, k: int, place: float) -> bool:
@@ -113,13 +126,13 @@ def first_action(s: Motion, k: int) -> tuple[float, bool]:
     return first_rise(s.scan, 1.0, -band, start), True
 
 
-def locate(s: Motion, k: int, h: float, at: float, slope: float) -> float:
-    """Time from now at which guard k acts: secants on steps of that length, of which the last one is left."""
+def locate(s: Motion, h: float) -> float:
+    """Time from now at which the guard found acts: secants on steps of that length, of which the last one is left."""
     t, most = s.now, s.t_end - s.now
-    s.culprit, s.rate, s.missed = k, slope / h, nan
-    tau = s.meet(t, min(at * h, most), most, FAR * h, REFINEMENTS)
-    if abs(guard(s.m, s.mode, k, t + tau, s.y_new) - s.event_at) > JUMP * slope:
-        tau = min(bisect(s, k, h, at), most)
+    s.culprit, s.rate, s.missed = s.acting, s.slope / h, nan
+    tau = s.meet(t, min(s.place * h, most), most, FAR * h, REFINEMENTS)
+    if abs(guard(s.m, s.mode, s.acting, t + tau, s.y_new) - s.event_at) > JUMP * s.slope:
+        tau = min(bisect(s, s.acting, h, s.place), most)
         s.step(t, tau)
     return tau
 

@@ -11,7 +11,7 @@ import cython
 
 from lcpstep.events.hybrid.field import approaches, band_and_rate, guard, project
 from lcpstep.events.hybrid.kinds import ARRIVE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING
-from lcpstep.events.hybrid.locate import UNKNOWN, find, locate
+from lcpstep.events.hybrid.locate import UNKNOWN, find, locate, turns_back
 from lcpstep.events.hybrid.state import Motion
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Course
@@ -74,19 +74,19 @@ def advance(s: Motion) -> int:
     if code != DONE:
         return code
     h = s.length
-    k, at, slope, curvature = find(s, h, 1.0)
+    k = find(s, h, 1.0)
     if k == UNKNOWN:
         return NOT_FINITE
     tau = h
     if k >= 0:
         s.armed[k] = s.was_armed
-        if s.was_armed and slope * slope <= -4.0 * s.band[k] * curvature:
+        if turns_back(s):
             s.keep(h)
-            s.at(at, s.y_new)
+            s.at(s.place, s.y_new)
             copy(s.y, s.y_new, s.n)
-            s.culprit, s.now = k, t + at * h
+            s.culprit, s.now = k, t + s.place * h
             return NOT_TRANSVERSAL
-        tau = locate(s, k, h, at, slope)
+        tau = locate(s, h)
         s.complete(t, tau)
         s.culprit = k
     s.keep(tau)

@@ -27,7 +27,9 @@ class Motion(RungeKutta):
     culprit                      the guard by which a switch is due, or -1
     steps, events, stalled       taken; switches, those at one instant
     last_switch, brief           time of it; how long a mode lasted at most that a guard left within its band, of late
-    event_at, was_armed          of the event found: the value of its guard, whether that was below its band before
+    acting, place                the guard found to act within a step, or -1; where, as a fraction of it
+    slope, curvature             of that guard there, per step
+    event_at, was_armed          its value there; whether it was below its band before
     rate, missed, tried          slope of that guard; its value, less `event_at`, after the step last tried; its size
     armed, band : (guards,)      whether each has been below its band since the mode began; how well it is known
     states : (samples, n)        of a step
@@ -65,6 +67,7 @@ class Motion(RungeKutta):
         """Begin at time t in a mode with the state y."""
         self.begin(FIRST_STEP * self.longest)
         self.now, self.last_switch, self.mode, self.begun, self.culprit = t, -inf, mode, False, -1
+        self.acting, self.place, self.slope, self.curvature = -1, 2.0, 0.0, 0.0
         self.event_at, self.was_armed, self.brief = 0.0, False, 0.0
         self.rate = self.missed = self.tried = 0.0
         self.steps, self.events, self.stalled, self.row, self.switches = 0, 0, 0, 0, 0

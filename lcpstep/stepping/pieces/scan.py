@@ -15,7 +15,7 @@ import cython
 from lcpstep.kernels.dynamics import moves
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import copy
-from lcpstep.pointers import abs, after, max, min
+from lcpstep.pointers import abs, after, inf, max, min
 from lcpstep.stepping.pieces.codes import CLOSED, EPS, LEFT, NOBODY, OPEN, ROUNDING
 from lcpstep.stepping.pieces.contact_forces import pulls
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
@@ -92,11 +92,7 @@ def lowest(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: 
 
 def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float) -> tuple[int, float]:
     """Which gap closes first in (0, end], and when; NOBODY and the end if none does, NOWHERE if one is not finite."""
-    n_c, found, first = w.n_c, NOBODY, end
-    for c in range(n_c):
-        touches = w.status[c] == OPEN and w.gap[c] <= 0.0 and w.rate[c] < 0.0
-        if touches and (found == NOBODY or w.rate[c] < w.rate[found]):
-            found = c
+    n_c, found, first = w.n_c, closing_now(w), end
     if found != NOBODY or end == 0.0:
         return found, 0.0
     copy(z.gap_from, w.gap, n_c)
@@ -108,28 +104,8 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
         for c in range(n_c):
             if not isfinite(z.gap_to[c]):
                 return NOWHERE, b
-            if w.status[c] != OPEN:
-                continue
-            hop = w.gap[c] <= 0.0 and z.gap_from[c] <= plan.slack
-            fine = hop or is_low(plan, w, b, c)
-            if fine and z.gap_to[c] <= plan.slack:  # finer than positions tell
-                mean, _ = hop_at(m, plan, w, z, t, b, c)
-                z.gap_to[c] = b * mean
-                if hop and w.grounded[c] == LEFT and abs(mean) <= ROUNDING * speed_terms(plan, w, c):
-                    continue  # what has been let go a moment ago
-            low, touches = b, False
-            if z.gap_to[c] > 0.0:
-                if hop or not (z.rate_from[c] < 0.0 < z.rate_to[c]):
-                    continue
-                low = lowest(m, plan, w, z, t, a, b, c)
-                g, _ = gap_at(m, plan, w, z, t, low, c)
-                if g > 0.0:
-                    continue
-                touches = g >= -EPS * height_terms(m, w, z, c)
-            start = max(a, SOON * end) if w.grounded[c] == LEFT else a
-            rests = hop and start == 0.0 and w.rate[c] <= 0.0
-            tau = low if touches else 0.0 if rests else landing(m, plan, w, z, t, start, low, c, fine)
-            if tau < first or found == NOBODY:
+            tau = landing_within(m, plan, w, z, t, a, b, end, c) if w.status[c] == OPEN else inf
+            if tau < first or (found == NOBODY and tau < inf):
                 found, first = c, tau
         if found != NOBODY:
             return found, first
@@ -137,6 +113,43 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
         copy(z.rate_from, z.rate_to, n_c)
         a = b
     return NOBODY, end
+
+
+def closing_now(w: Work) -> int:
+    """Of the open gaps that are zero and close, the fastest; NOBODY if none does."""
+    found = NOBODY
+    for c in range(w.n_c):
+        touches = w.status[c] == OPEN and w.gap[c] <= 0.0 and w.rate[c] < 0.0
+        if touches and (found == NOBODY or w.rate[c] < w.rate[found]):
+            found = c
+    return found
+
+
+def landing_within(
+    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, end: float, c: int
+) -> float:
+    """When the open gap c falls to zero in the interval (a, b] of (0, end]; infinite if it does not."""
+    hop = w.gap[c] <= 0.0 and z.gap_from[c] <= plan.slack
+    fine = hop or is_low(plan, w, b, c)
+    if fine and z.gap_to[c] <= plan.slack:  # finer than positions tell
+        mean, _ = hop_at(m, plan, w, z, t, b, c)
+        z.gap_to[c] = b * mean
+        if hop and w.grounded[c] == LEFT and abs(mean) <= ROUNDING * speed_terms(plan, w, c):
+            return inf  # what has been let go a moment ago
+    low = b
+    if z.gap_to[c] > 0.0:
+        if hop or not (z.rate_from[c] < 0.0 < z.rate_to[c]):
+            return inf
+        low = lowest(m, plan, w, z, t, a, b, c)
+        g, _ = gap_at(m, plan, w, z, t, low, c)
+        if g > 0.0:
+            return inf
+        if g >= -EPS * height_terms(m, w, z, c):  # a touch
+            return low
+    start = max(a, SOON * end) if w.grounded[c] == LEFT else a
+    if hop and start == 0.0 and w.rate[c] <= 0.0:
+        return 0.0
+    return landing(m, plan, w, z, t, start, low, c, fine)
 
 
 def first_release(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float) -> tuple[int, float]:
