@@ -73,6 +73,15 @@ def test_a_contact_whose_load_has_gone_stays_whatever_the_rounding(seed):
     np.testing.assert_allclose(run.q[-1], true.q[-1], rtol=0, atol=1e-5)
 
 
+def test_a_blow_elsewhere_opens_nothing_that_rests():
+    """A disc slides down a wall, to which rounding has left it a speed of 1e-80, when another lands.
+
+    Opened by that, it struck the floor as if without the wall that it touches, and came to lie 0.04 m from there.
+    """
+    run, true = simulate(heap((11, 29)), EventDriven()), simulate(heap((11, 29)), Located(5e-4, order=4))
+    np.testing.assert_allclose(run.q[-1], true.q[-1], rtol=0, atol=1e-11)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [449, 451])
 def test_heaps_that_jam_go_on_as_by_moreaus_steps_from_just_before(seed):

@@ -96,9 +96,11 @@ def strike_by_either(s: Rubbing, t: float, plastic: bool) -> bool:
 
 
 def look_before(s: Rubbing) -> None:
-    """The velocities before an impact, and before the corner that it is at."""
+    """The velocities before an impact, and before the corner that it is at; of what is closed they are rounding."""
     for c in range(s.n_c):
-        s.before[c] = s.velocity[s.n_j + c] - s.jumped[c] if s.mode[c] == OPEN else 0.0
+        s.before[c] = s.velocity[s.n_j + c] - s.jumped[c]
+        if s.mode[c] != OPEN:
+            s.terms[c], s.before[c] = max(s.terms[c], abs(s.before[c])), 0.0
         if s.n_t > 0:
             take_for_none(s, c)
         s.free[c] = 1
