@@ -4,5 +4,5 @@ cdef class ContactProblem:
     cdef object space
     cdef Doubles mobility, rate, impulse, mu, W, b, z, slow, fast, made, sum
     cdef Indices ids, carrier
-    cdef bint warm
+    cdef bint warm, again
     cdef Workspace work

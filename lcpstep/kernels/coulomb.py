@@ -49,6 +49,7 @@ class ContactProblem:
     carrier  place in `ids` of the normal of each tangent
     warm     the impulses of the last problem are a guess for the next; without one, a problem with several solutions
              has the same whatever came before
+    again    with friction: the problem is the last one, hardly changed, and the impulses of that are a guess
     W, b, z  of the problem with friction;  fast : (n_c,)  sliding velocities that another problem has slower
     slow, made, sum    of impacts in turn, see `energetic`: speeds below which contacts have no restitution, and what
                  forces have made of their approaches, (n_c,) each; impulses of those before (m,)
@@ -80,7 +81,7 @@ class ContactProblem:
         self.lists = np.zeros(n, dtype=np.intp), np.zeros(n_c, dtype=np.intp)
         self.ids, self.carrier = indices(self.lists[0]), indices(self.lists[1])
         largest = unknowns if unknowns > n_c else n_c
-        self.warm, self.work = warm, Workspace(largest if largest > 0 else 1)
+        self.warm, self.again, self.work = warm, False, Workspace(largest if largest > 0 else 1)
 
 
 def solve_contacts(c: ContactProblem, n_a: int, n_f: int) -> bool:
@@ -199,10 +200,11 @@ def motion_of(c: ContactProblem, p: Doubles, i: int, m: int) -> tuple[float, flo
 
 
 def begin(c: ContactProblem, m: int, n: int) -> None:
-    """A problem of n unknowns, the first m rows and columns those of the contacts, all else zero; no guess."""
+    """A problem of n unknowns, the first m rows and columns those of the contacts, all else zero."""
     clear(c.W, n * n)
     clear(c.b, n)
-    clear(c.z, n)
+    if not c.again:
+        clear(c.z, n)
     for i in range(m):
         c.b[i] = c.rate[i]
         for k in range(m):

@@ -56,6 +56,9 @@ from lcpstep.stepping.theta_method.row_impulses import (
     take_part,
 )
 
+SETTLED = (
+    6  # iterations after which impulses are looked for where the last ones were: there may be others as good
+)
 UNDECIDED = 14  # iterations after which loads are shared by turns: contacts that bear nothing are left out
 ALIKE = 1e-2  # of a gap velocity's terms: by so much it may close then
 
@@ -151,6 +154,7 @@ def step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> in
         if not finite(s.v_free, s.n_q):
             return NOT_FINITE
         if n_a + c.n_j > 0:
+            c.problem.again = s.iteration >= SETTLED
             if not c.solved:
                 c.blows.several = n_a > 1 and not c.in_turn and separates(plan, s, c, c.blows, n_a)
             if c.blows.several:
