@@ -4,5 +4,6 @@ theta_loop, theta_step    the loop over steps; a step; `moving`, its constants, 
 row_impulses, blows       impulses of the rows that take part; blows one after another
 implicit, responses       Newton's iteration of nonlinear systems; what impulses make of velocities
 one_contact               one coordinate and contact, in registers
-turned_rows, repair       rows that joints turn within the step; states put back onto joints and obstacles
+turned_rows, idle         beside joints: rows that they turn within the step; contacts that bear nothing by turns
+repair                    states put back onto joints and obstacles
 """

@@ -43,6 +43,7 @@ from lcpstep.stepping.theta_method.codes import (
     NOT_FINITE,
     RELEASE,
 )
+from lcpstep.stepping.theta_method.idle import leave_out_idle, take_back_idle
 from lcpstep.stepping.theta_method.implicit import linearise
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.one_contact import closed_since, kind_of
@@ -60,7 +61,6 @@ SETTLED = (
     6  # iterations after which impulses are looked for where the last ones were: there may be others as good
 )
 UNDECIDED = 14  # iterations after which loads are shared by turns: contacts that bear nothing are left out
-ALIKE = 1e-2  # of a gap velocity's terms: by so much it may close then
 
 
 def take_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> int:
@@ -128,62 +128,11 @@ def closes_again(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> bool
 
 def step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> int:
     """One step with the active contacts into next_q, next_v, and the impulses."""
-    n_a, c.n_f, idle = s.active, 0, 0
-    if c.n > c.n_c:
-        take_part(c, n_a)
-    if n_a > 0:
-        for i in range(s.n_q):  # where the velocity at the start leads to
-            s.next_q[i] = s.q[i] + plan.h * s.v[i]
-        gap_rates(m, t_next, s.next_q, s.v, c.H, c.H_t)
-    if c.n_f > 0 and not tangent_rates(s, c, t, t_next):
+    if not begin_step(m, plan, s, c, t, t_next):
         return NOT_FINITE
-    if c.n_j > 0:
-        gap_rates(c.joints, t, s.q, s.v, c.J_start, c.J_t)
-    if n_a + c.n_j == 0:
-        clear(c.p, c.n)
-    if not c.solved:
-        copy(s.next_v, s.v, s.n_q)
-        s.iteration = 0
-    if m.linear:
-        free_velocity(m, plan, s, t_next)
-    while True:
-        if c.n_j > 0:
-            position(plan, s)
-        if not m.linear and not linearise(m, plan, s, t, t_next):
-            return NOT_FINITE
-        if not finite(s.v_free, s.n_q):
-            return NOT_FINITE
-        if n_a + c.n_j > 0:
-            c.problem.again = s.iteration >= SETTLED
-            if not c.solved:
-                c.blows.several = n_a > 1 and not c.in_turn and separates(plan, s, c, c.blows, n_a)
-            if c.blows.several:
-                code = one_after_another(m, plan, s, c, c.blows, t_next)
-            else:
-                if c.n_j > 0 or not plan.constant:
-                    prepare(m, plan, s, c, n_a, t_next)
-                code = impulses(m, plan, s, c, n_a, t_next, True)
-            if code != FINISHED:
-                return code
-            c.solved, n_a = False, s.active
-        n_k = n_a + c.n_f + c.n_j
-        if c.n_f == 0 and m.linear and not c.turning:
-            apply_once(plan, s, c, n_k)
-            break
-        if apply(plan, s, c, n_k) or (m.linear and not c.turning):
-            break
-        s.iteration += 1
-        if s.moved == 0.0 and s.iteration >= (UNDECIDED if c.n_j > 0 else MAX_ITERATIONS):
-            break  # forces that cancel, or loads shared by turns, at places which nothing tells apart
-        if s.iteration >= MAX_ITERATIONS:
-            return NEWTON_FAILED
-        if s.iteration >= UNDECIDED and c.n_j > 0:
-            idle = leave_out_idle(s, c, n_a, idle)
-            n_a = s.active
-    if c.coefficients.two or c.n_f > 1:
-        note_sticking(s, c, n_a, c.n_f)
-    if idle > 0 and not take_back_idle(s, c, n_a, idle):
-        return NEWTON_FAILED
+    code = iterate(m, plan, s, c, t, t_next)
+    if code != FINISHED:
+        return code
     position(plan, s)
     if c.n_j == 0:
         return FINISHED
@@ -193,36 +142,75 @@ def step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> in
     return FINISHED if hold else JOINTS_FAILED
 
 
-def leave_out_idle(s: State, c: Rows, n_a: int, idle: int) -> int:
-    """Leave out, after `idle` others, those of n_a active contacts that bear nothing in the last iteration; how many.
-
-    Two at one place, as ends of rods that a joint links, hand their load over to each other without end.
-    """
-    ids, kept = c.problem.ids, 0
-    for k in range(n_a):
-        i = ids[k]
-        ids[k], ids[kept] = ids[kept], i
-        kept += 1 if c.p[i] > 0.0 else 0
-    if kept == 0 or kept == n_a:
-        return idle
-    for k in range(kept, n_a):
-        c.left_out[idle + k - kept] = ids[k]
-    s.active = kept
-    take_part(c, kept)
-    return idle + n_a - kept
-
-
-def take_back_idle(s: State, c: Rows, n_a: int, idle: int) -> bool:
-    """Whether contacts left out do not close by more than places in a step differ; they are active all the same."""
-    for k in range(idle):
-        i = c.left_out[k]
-        u = product(c.H, s.next_v, i, s.n_q) + c.H_t[i]
-        terms = size_of_product(c.H, s.next_v, i, s.n_q) + size_of_product(c.H, s.v_free, i, s.n_q)
-        if u < -ALIKE * (terms + abs(c.H_t[i])):
-            return False
-        c.problem.ids[n_a + k] = i
-    s.active = n_a + idle
+def begin_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> bool:
+    """Rows that take part, and what an iteration does not change of them; False where they are not finite."""
+    c.n_f = 0
+    if c.n > c.n_c:
+        take_part(c, s.active)
+    if s.active > 0:
+        for i in range(s.n_q):  # where the velocity at the start leads to
+            s.next_q[i] = s.q[i] + plan.h * s.v[i]
+        gap_rates(m, t_next, s.next_q, s.v, c.H, c.H_t)
+    if c.n_f > 0 and not tangent_rates(s, c, t, t_next):
+        return False
+    if c.n_j > 0:
+        gap_rates(c.joints, t, s.q, s.v, c.J_start, c.J_t)
+    if s.active + c.n_j == 0:
+        clear(c.p, c.n)
+    if not c.solved:
+        copy(s.next_v, s.v, s.n_q)
+        s.iteration = 0
+    if m.linear:
+        free_velocity(m, plan, s, t_next)
     return True
+
+
+def iterate(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> int:
+    """Velocity and impulses of the step: one pass of a linear system, else until the velocity changes no more."""
+    idle, once = 0, m.linear and not c.turning
+    while True:
+        code = find_impulses(m, plan, s, c, t, t_next)
+        if code != FINISHED:
+            return code
+        n_k = s.active + c.n_f + c.n_j
+        if once and c.n_f == 0:
+            apply_once(plan, s, c, n_k)
+            break
+        if apply(plan, s, c, n_k) or once:
+            break
+        s.iteration += 1
+        if s.moved == 0.0 and s.iteration >= (UNDECIDED if c.n_j > 0 else MAX_ITERATIONS):
+            break  # forces that cancel, or loads shared by turns, at places which nothing tells apart
+        if s.iteration >= MAX_ITERATIONS:
+            return NEWTON_FAILED
+        if s.iteration >= UNDECIDED and c.n_j > 0:
+            idle = leave_out_idle(s, c, idle)
+    if c.coefficients.two or c.n_f > 1:
+        note_sticking(s, c, s.active, c.n_f)
+    return FINISHED if idle == 0 or take_back_idle(s, c, idle) else NEWTON_FAILED
+
+
+def find_impulses(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> int:
+    """Velocity without contact, and impulses of the rows that take part, from the velocity found so far."""
+    if c.n_j > 0:
+        position(plan, s)
+    if not m.linear and not linearise(m, plan, s, t, t_next):
+        return NOT_FINITE
+    if not finite(s.v_free, s.n_q):
+        return NOT_FINITE
+    if s.active + c.n_j == 0:
+        return FINISHED
+    c.problem.again = s.iteration >= SETTLED
+    if not c.solved:
+        c.blows.several = s.active > 1 and not c.in_turn and separates(plan, s, c, c.blows, s.active)
+    if c.blows.several:
+        code = one_after_another(m, plan, s, c, c.blows, t_next)
+    else:
+        if c.n_j > 0 or not plan.constant:
+            prepare(m, plan, s, c, s.active, t_next)
+        code = impulses(m, plan, s, c, s.active, t_next, True)
+    c.solved = c.solved and code != FINISHED
+    return code
 
 
 def position(plan: Plan, s: State) -> None:
