@@ -115,6 +115,20 @@ def simulate(
     >>> ball.status.name
     'DONE'
     """
+    _check(scene, method, progress, error)
+    kept, report = Kept.parse(keep, scene.t_span), progress or (lambda _: None)
+    forget_all()
+    if isinstance(scene, HybridScene):
+        return _run_modes(scene, method, kept, report)
+    if is_large(scene):
+        _compare_first(scene)
+    if error:
+        return _run_with_error(scene, method, kept, report)
+    return _looked_over(_unbroken(_run(scene, method, kept, report)))
+
+
+def _check(scene: Any, method: Any, progress: Any, error: Any) -> None:
+    """TypeError or LcpStepError where an argument is none of those asked for, or there is no error bar."""
     if not isinstance(scene, (Scene, HybridScene)):
         raise TypeError(f"scene: expected a lagrangian.Scene, got {scene!r}")
     if isinstance(method, type) or not hasattr(method, "run"):
@@ -125,41 +139,56 @@ def simulate(
         raise TypeError(f"error: expected True or False, got {error!r}")
     if error:
         _can_tell_errors(scene, method)
-    kept, report = Kept.parse(keep, scene.t_span), progress or (lambda _: None)
-    forget_all()
-    if isinstance(scene, HybridScene):
-        if not hasattr(method, "run_hybrid"):
-            raise refused("modes-method", scene)
-        if getattr(method, "audit", False):
-            raise refused("modes-audit", scene)
-        moved: HybridTrajectory = method.run_hybrid(scene, kept, report)
-        if fault() is not None:
-            from lcpstep.culprits import hybrid_culprit
 
-            raise _raised(moved, hybrid_culprit(scene, moved.mode[-1]))
-        return moved
-    if is_large(scene):
-        _compare_first(scene)
-    begin, asked = time.process_time() if error else 0.0, kept
-    if error:
-        from lcpstep.errorbar.wide import narrowed, widened
 
-        kept = widened(method, scene, kept)
+def _run_modes(
+    scene: HybridScene, method: Any, kept: Kept, report: Callable[[float], None]
+) -> HybridTrajectory:
+    """The motion of a system with modes; SimulationError where a callback has raised."""
+    if not hasattr(method, "run_hybrid"):
+        raise refused("modes-method", scene)
+    if getattr(method, "audit", False):
+        raise refused("modes-audit", scene)
+    run: HybridTrajectory = method.run_hybrid(scene, kept, report)
+    if fault() is not None:
+        from lcpstep.culprits import hybrid_culprit
+
+        raise _raised(run, hybrid_culprit(scene, run.mode[-1]))
+    return run
+
+
+def _run(scene: Scene, method: Method, kept: Kept, report: Callable[[float], None]) -> Trajectory:
+    """The motion by the method, which an audit calls where one was asked for."""
     if getattr(method, "audit", False):
         from lcpstep.audit import audited
 
-        run = audited(method, scene, kept, report)
-    else:
-        run = method.run(scene, kept, report)
-    seconds, wide = time.process_time() - begin if error else 0.0, run
-    if kept is not asked:
-        run = narrowed(run, kept)
+        return audited(method, scene, kept, report)
+    return method.run(scene, kept, report)
+
+
+def _unbroken(run: Trajectory) -> Trajectory:
+    """The run; SimulationError where a callback has raised in it."""
     if fault() is not None:
         from lcpstep.culprits import culprit
 
-        raise _raised(run, culprit(scene, (), run.q, run.v))
-    run = _looked_over(run)
-    return _with_error(run, wide, kept, seconds) if error else run
+        raise _raised(run, culprit(run.scene, (), run.q, run.v))
+    return run
+
+
+def _run_with_error(scene: Scene, method: Method, kept: Kept, report: Callable[[float], None]) -> Trajectory:
+    """The motion with its error bar, told by states between those kept; an interrupt leaves it without one."""
+    from lcpstep.errorbar.estimate import error_bar
+    from lcpstep.errorbar.wide import narrowed, widened
+
+    begin, more = time.process_time(), widened(method, scene, kept)
+    wide = _run(scene, method, more, report)
+    seconds = time.process_time() - begin
+    run = _looked_over(_unbroken(wide if more is kept else narrowed(wide, more)))
+    times = more.times if run is not wide else None
+    try:
+        return replace(run, error=error_bar(run if times is None else wide, more.all, seconds, times))
+    except KeyboardInterrupt:
+        raise SimulationInterrupted(lambda: run) from None
 
 
 def _looked_over(run: Trajectory) -> Trajectory:
@@ -196,17 +225,6 @@ def _can_tell_errors(scene: Any, method: Method) -> None:
     if not isinstance(method, KNOWN):
         names = ", ".join(x.__name__ for x in KNOWN)
         raise LcpStepError(f"error: expected one of the methods {names}, got {method!r}")
-
-
-def _with_error(run: Trajectory, wide: Trajectory, kept: Kept, seconds: float) -> Trajectory:
-    """The run with its error bar, told by one with more states; an interrupt leaves the run without one."""
-    from lcpstep.errorbar.estimate import error_bar
-
-    times = kept.times if wide is not run else None
-    try:
-        return replace(run, error=error_bar(run if times is None else wide, kept.all, seconds, times))
-    except KeyboardInterrupt:
-        raise SimulationInterrupted(lambda: run) from None
 
 
 def _compare_first(scene: Scene) -> None:
