@@ -14,22 +14,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from lcpstep.faults import cause, forget
-from lcpstep.kernels.looks import turning
+from lcpstep.kernels.fast_turn import first_turn
 from lcpstep.model import looked_at
 from lcpstep.turns.source import GOLDEN
 
 PER, LEAST, MOST = 8, 32, 2048  # evaluations of the forces per look, and how many looks there are
-AROUND = np.array(
-    [-2.0, -1.0, 2.0, 3.0]
-)  # steps after the state, besides its ends and the look, where the gap leaves the line through these
-NEAR = 1.0 / 64.0  # of a step: of the differences
-FASTER = 10.0  # than a step
-PLAIN, LEAST_SHARE = 1e-2, 1e-4  # of the gap there, and of all gaps: how far it leaves its line
-ROUNDING = 1e-12  # of the coordinates, and of the way that the obstacle goes in the time since zero
-LIMITS = np.array([NEAR, FASTER, PLAIN, LEAST_SHARE, ROUNDING])
 
 
 def fast_gap(run: Any) -> str:
@@ -38,7 +28,7 @@ def fast_gap(run: Any) -> str:
     if n < 1:
         return ""
     looks, steps = min(MOST, max(LEAST, run.counts.force_evaluations // PER)), max(1, run.counts.steps)
-    i, c = turning(looked_at(run.scene), run.t, run.q, run.v, steps, looks, GOLDEN, AROUND, LIMITS)
+    i, c = first_turn(looked_at(run.scene), run.t, run.q, run.v, steps, looks, GOLDEN)
     cause()  # the motion may never come there: what a function raises does not count, but for the keyboard
     forget()
     if i < 0:

@@ -67,8 +67,8 @@ from dataclasses import replace
 
 from lagrangian import scenes
 from lcpstep import Moreau, simulate
-from lcpstep.fast_gaps import AROUND, LIMITS
-from lcpstep.kernels.looks import highest, lies_inside, turning
+from lcpstep.kernels.fast_turn import first_turn
+from lcpstep.kernels.looks import highest, lies_inside
 from lcpstep.model import model
 
 for name in ("bowl", "double-pendulum"):
@@ -77,8 +77,7 @@ for name in ("bowl", "double-pendulum"):
     m = model(run.scene)
     print([lies_inside(m, run.t, run.q, 9, share, True) for share in (0.0, 1e-4, 1e-3, 1e-2)])
     print(lies_inside(m, run.t, run.q, 9, 1e-4, False), highest(m, run.t, run.q, run.v, 4, 1e-5).hex())
-    print(turning(m, run.t, run.q, run.v, 50, 8, 0.618, AROUND, LIMITS), turning(m, run.t, run.q, run.v, 50, 8, 0.618,
-        AROUND, LIMITS * 1e-4))
+    print([first_turn(m, run.t, run.q, run.v, 50, 8, 0.618, faster) for faster in (10.0, 1e-3)])
 """
 
 

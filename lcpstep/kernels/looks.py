@@ -1,8 +1,7 @@
 """Looks at a finished run that tell, in one pass, whether there is anything to say of it.
 
 `lies_inside` and `highest` hold wherever `lcpstep.room`, `lcpstep.depth` or `lcpstep.resolution` have something to
-say, at the very states that these look at; `turning` is what `lcpstep.fast_gaps` says. A run is kept at times t (n,)
-in states q, v (n, n_q), contiguous.
+say, at the very states that these look at. A run is kept at times t (n,) in states q, v (n, n_q), contiguous.
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ import numpy as np
 from lcpstep.arrays import doubles
 from lcpstep.kernels.dynamics import gap_rates, gaps, mass, total_force
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import copy, finite, size_of_product
+from lcpstep.kernels.vectors import copy, finite
 from lcpstep.pointers import Doubles, abs, after, inf, max, min, whole
 
 
@@ -155,118 +154,3 @@ def four_at_once(x: Doubles, n: int) -> bool:
             c += x[i + 2] - x[i + 2]
             d += x[i + 3] - x[i + 3]
     return a + b + c + d == 0.0 and finite(after(x, whole_fours), n - whole_fours)
-
-
-def turning(
-    m: Model, t: Any, q: Any, v: Any, steps: int, looks: int, golden: float, places: Any, limits: Any
-) -> tuple[int, int]:
-    """The first of so many looks, spread by the golden ratio, where a gap turns within a step, and which gap.
-
-    places : (k,)   between which it leaves its straight line, in steps after a look
-    limits : NEAR, FASTER, PLAIN, LEAST_SHARE and ROUNDING of `lcpstep.fast_gaps`
-
-    Returns
-    -------
-    look and contact; -1 and 0 where there is none
-    """
-    count, work = len(t), np.zeros((2 * looks + 6) * m.n_c + m.n_q * (m.n_c + m.n_q + 2))
-    at, x, x_t = doubles(t), doubles(q), doubles(v)
-    others, bounds, own = doubles(places), doubles(limits), doubles(work)
-    found = find_turn(m, count, at, x, x_t, steps, looks, golden, others, len(places), bounds, own)
-    return (found // m.n_c, found % m.n_c) if found >= 0 else (-1, 0)
-
-
-@cython.cfunc
-def find_turn(
-    m: Model,
-    count: int,
-    t: Doubles,
-    q: Doubles,
-    v: Doubles,
-    steps: int,
-    looks: int,
-    golden: float,
-    places: Doubles,
-    n_places: int,
-    limits: Doubles,
-    work: Doubles,
-) -> int:
-    """Kernel of `turning`."""
-    n, n_q, found = m.n_c, m.n_q, -1
-    near, faster, plain, least, rounding = limits[0], limits[1], limits[2], limits[3], limits[4]
-    before, later, largest, x = work, after(work, n), after(work, 5 * n), after(work, 6 * n)
-    start, end, other = after(work, 2 * n), after(work, 3 * n), after(work, 4 * n)
-    G, g = after(x, n_q), after(x, n_q * (n + 1))
-    bent, force = after(g, looks * n), after(g, 2 * looks * n)
-    with cython.nogil:
-        first, last = t[0], t[count - 1]
-        mean = (last - first) / steps
-        for i in range(looks):
-            at = spread(i, looks, golden) * (count - 1)
-            k = whole(at)
-            share, h, own, v_own = at - k, min(t[k + 1] - t[k], mean), after(q, k * n_q), after(v, k * n_q)
-            ahead(m, t[k], first, last, own, v_own, (share - near) * h, x, before)
-            ahead(m, t[k], first, last, own, v_own, share * h, x, after(g, i * n))
-            ahead(m, t[k], first, last, own, v_own, (share + near) * h, x, later)
-            for c in range(n):
-                here = g[i * n + c]
-                bent[i * n + c] = abs(before[c] - 2.0 * here + later[c]) / (8.0 * near * near)
-                largest[c] = max(largest[c], abs(here))
-        for j in range(looks * n):
-            i, c = j // n, j % n
-            if found >= 0 or not bent[j] > faster * least * largest[c]:
-                continue
-            at = spread(i, looks, golden) * (count - 1)
-            k = whole(at)
-            share, h, own, v_own = at - k, min(t[k + 1] - t[k], mean), after(q, k * n_q), after(v, k * n_q)
-            ahead(m, t[k], first, last, own, v_own, 0.0, x, start)
-            ahead(m, t[k], first, last, own, v_own, h, x, end)
-            slope = end[c] - start[c]
-            left = abs(g[j] - start[c] - share * slope)
-            most = max(least * largest[c], plain * min(abs(start[c]), abs(end[c])))
-            if not (left > most and bent[j] > faster * left):
-                continue
-            gap_rates(m, t[k], own, v_own, G, other)
-            size = abs(other[c] * t[k]) + size_of_product(G, own, c, n_q)
-            # At rest near zero the coordinates are themselves rounding, of what forces that cancel make in a step
-            if left > rounding * (size + h * h * pushed(m, t[k], own, v_own, after(G, c * n_q), force)):
-                found = j
-            for i_p in range(n_places):
-                if found == j:
-                    ahead(m, t[k], first, last, own, v_own, places[i_p] * h, x, other)
-                    if not bent[j] > faster * abs(other[c] - start[c] - places[i_p] * slope):
-                        found = -1
-    return found
-
-
-def pushed(m: Model, t: float, q: Doubles, v: Doubles, G: Doubles, work: Doubles) -> float:
-    """Size of the acceleration of a gap by all forces, as if no coordinate moved another one."""
-    n, size, M = m.n_q, 0.0, after(work, m.n_q)
-    total_force(m, t, q, v, work)
-    mass(m, t, q, v, M)
-    for j in range(n):
-        size += abs(G[j] * work[j] / M[j * n + j])
-    return size
-
-
-def spread(i: int, looks: int, golden: float) -> float:
-    """Where the look i of so many lies, between 0 and 1: one in each part, at a place of its own."""
-    part = i * golden
-    return (i + (part - whole(part))) / (looks + 1)
-
-
-def ahead(
-    m: Model,
-    t: float,
-    first: float,
-    last: float,
-    q: Doubles,
-    v: Doubles,
-    length: float,
-    x: Doubles,
-    g: Doubles,
-) -> None:
-    """Every gap on the straight line from a state, so much later; its times stay within the run."""
-    for j in range(m.n_q):
-        x[j] = q[j] + length * v[j]
-    gaps(m, min(max(t + length, first), last), x, v, g)
