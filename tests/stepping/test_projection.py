@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Joints, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
+from lagrangian import Joints, LinearContacts, LinearJoints, LinearSystem, Scene, System, scenes
 from lcpstep import Moreau, simulate
 from tests.models import BOWL, RISING_CIRCLE, bowl_scene
 
@@ -47,6 +47,26 @@ def test_no_obstacle_is_entered(scene):
     assert projected.status.name == "DONE"
     assert lowest_gap(scene, plain) < -1e-7
     assert lowest_gap(scene, projected) >= -SCALE * max(1.0, np.max(np.abs(projected.q)))
+
+
+@pytest.mark.parametrize("theta", [0.5, 1.0])
+def test_forces_are_those_of_the_place_that_is_put_back(theta):
+    """A step of a `System` began with the forces of the place inside the obstacle, not of a `LinearSystem`."""
+    M, C, K, F = np.diag([1.0, 2.0]), 0.3 * np.eye(2), np.array([[300.0, -40.0], [-40.0, 50.0]]), [-30.0, 2.0]
+
+    def force(t, q, v, p, out):
+        out[0] = -30.0 - 0.3 * v[0] - 300.0 * q[0] + 40.0 * q[1]
+        out[1] = 2.0 - 0.3 * v[1] + 40.0 * q[0] - 50.0 * q[1]
+
+    contacts = LinearContacts([[1.0, 0.4], [-1.0, 0.3]], offset=[0.05, 0.1], restitution=0.6)
+    linear, general = (
+        simulate(
+            Scene(system, [0.1, 0.0], [0.0, 1.0], (0.0, 2.0), contacts), Moreau(1e-2, theta, projected=True)
+        )
+        for system in (LinearSystem(M, C, K, F), System(2, M, force))
+    )
+    assert len(linear.impacts) > 5
+    np.testing.assert_allclose(general.v, linear.v, atol=1e-8)
 
 
 def test_a_ball_slides_on_the_bowl_without_leaving_it():

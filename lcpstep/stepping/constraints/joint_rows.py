@@ -221,17 +221,19 @@ def sweep_out(
 
 
 def leave(e: Elimination, row: Doubles, J: Doubles, share: Doubles, n_q: int, out: Doubles) -> None:
-    """What joints leave of a row, with that share of each of theirs; what is but rounding is nothing."""
+    """What joints leave of a row, with that share of each of theirs; rounding of the largest is nothing."""
+    most = 0.0  # shares are known to the rounding of the largest, in the units in which joints have unit mobility
+    for j in range(e.n_j):
+        most = max(most, abs(share[j]) / e.scale[j] if e.scale[j] > 0.0 else 0.0)
     for q in range(n_q):
         out[q], e.size[q] = row[q], abs(row[q])
     for j in range(e.n_j):
         part, of = -share[j], after(J, j * n_q)
-        for q in range(n_q if part != 0.0 else 0):
+        for q in range(n_q if most > 0.0 else 0):
             out[q] += part * of[q]
-            e.size[q] += abs(part * of[q])
+            e.size[q] += e.scale[j] * most * abs(of[q])
     for q in range(n_q):
-        if abs(out[q]) <= NOTHING * e.size[q]:
-            out[q] = 0.0
+        out[q] = 0.0 if abs(out[q]) <= NOTHING * e.size[q] else out[q]
 
 
 def lost(e: Elimination, H: Doubles, n_q: int, i: int, k: int) -> bool:

@@ -18,7 +18,7 @@ import cython
 
 from lcpstep.kernels.acceleration import factor_mass, response
 from lcpstep.kernels.coulomb import solve_contacts
-from lcpstep.kernels.dynamics import gap_rates, gaps
+from lcpstep.kernels.dynamics import gap_rates, gaps, total_force
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, copy
 from lcpstep.pointers import abs, after, inf, max
@@ -49,6 +49,9 @@ def project(m: Model, plan: Plan, s: State, c: Rows, t: float) -> int:
             worst = max(worst, -c.gaps[i])
         worst = max(worst, off)
         if arrived(worst, before, plan.slack, c.H, c.n, s.next_q, s.n_q):
+            if before < inf and not m.linear:  # the next step begins with the forces of its own start
+                total_force(m, t, s.next_q, s.next_v, s.next_force)
+                s.forces += 1
             return FINISHED
         if not worst < inf:
             return PROJECTION_FAILED
