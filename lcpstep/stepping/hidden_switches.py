@@ -73,8 +73,8 @@ class Switches:
                 self.measure(i, plan, s, rows)
             self.impulse[first + i], self.holds[first + i] = p, 1 if p > 0.0 else 0
             self.force[first + i] = p / plan.h
-            if p == 0.0 and self.mobility[i] > 0.0:
-                self.force[first + i] = -(s.u[i] - before[i]) / (self.mobility[i] * plan.h)
+            if p == 0.0 and self.mobility[i] > 0.0:  # others, not it, stop what separates
+                self.force[first + i] = min(0.0, -(s.u[i] - before[i]) / (self.mobility[i] * plan.h))
         if rows.n_t > 0:
             self.note_friction(part, plan, s, rows, slow)
         for k in range(rows.n):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from benchmarks.judge.describe import Description
-from lagrangian import LinearContacts, Scene, System
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
 from tests.marks import slow
 
@@ -131,3 +131,23 @@ def test_a_force_may_jump_anywhere_within_a_step(place, push, tolerance):
     back = place + 2.0 / push  # it is there again, as fast as it came
     assert m.q[-1, 0] == pytest.approx(place - (1.0 - back), abs=tolerance)
     assert m.v[-1, 0] == pytest.approx(-1.0, abs=tolerance)
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("theta", [0.5, 0.75, 1.0])
+def test_a_body_thrown_between_two_walls_without_clearance_comes_to_rest_between_them(theta, tolerance):
+    """What stops it at one wall had counted as a force on the other, that it had just left: many runs ended."""
+    rng = np.random.default_rng(1198)
+    for _ in range(8):
+        mass, v, constant, sine, omega = rng.uniform([0.1, 1.0, -5.0, -5.0, 1.0], [10.0, 4.0, 5.0, 5.0, 10.0])
+        walls = LinearContacts(
+            [[1.0], [-1.0]], restitution=rng.choice([0.3, 0.5, 0.8, 1.0], 2, replace=False)
+        )
+        force = Harmonic(constant, sine=sine, omega=omega)
+        run = simulate(
+            Scene(LinearSystem(mass, force=force), 0.0, v, (0.0, 1.0), walls),
+            Moreau(1.0, theta, tolerance=tolerance),
+        )
+        assert run.status is Status.DONE, run.message
+        assert np.max(np.abs(run.q)) <= 2.0 * tolerance
+        assert abs(run.v[-1, 0]) <= tolerance
