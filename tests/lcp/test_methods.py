@@ -46,7 +46,7 @@ def solver_or_skip(method):
 
 @pytest.mark.parametrize("method", QP)
 def test_quadratic_programme_of_what_needs_no_impulse(method):
-    """By clarabel a scene at rest had ended: its own answer was its tolerance, and exchanges kept what that had left."""
+    """By clarabel a scene at rest had ended: its own answer was as large as its tolerance."""
     solver_or_skip(method)
     W = np.array([[2.19680847, -0.83981743], [-0.83981743, 4.66804814]])
     for b in ([0.0, 0.0], [0.0, 1e-3], [1.0, 0.0]):
