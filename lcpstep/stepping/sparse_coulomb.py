@@ -29,7 +29,7 @@ from lcpstep.lcp.factor import Patterned, Singular, Solve
 from lcpstep.lcp.newton import PATIENCE, STRICT
 from lcpstep.lcp.saddle import REFINED
 from lcpstep.lcp.status import NOTHING, ROUNDING, TOLERANCE
-from lcpstep.stepping.sparse_path import BACKWARDS, FORWARDS, GOLDEN, OPEN, SIGN, STICK, Path
+from lcpstep.stepping.sparse_path import BACKWARDS, FORWARDS, OPEN, SIGN, STICK, Path
 from lcpstep.stepping.steps import CONTRADICTION, largest
 
 PROXIMAL = 1e-10, 1e-13  # d, relative to the mobility of a row; the second for heavy bodies on light ones
@@ -132,9 +132,9 @@ class Coupled:
     def of_joints(self) -> Any:
         """Contacts (n_c,) whose normals the joints hold already: a velocity that these leave moves all other gaps.
 
-        Any velocity does, this one without a pattern.
+        Any velocity without a pattern does: of fractions of multiples one may be the mean of its neighbours.
         """
-        v, none = np.modf(GOLDEN * np.arange(1.0, self.n_q + 1.0))[0] - 0.5, np.zeros(self.n_c, dtype=bool)
+        v, none = np.random.default_rng(0).uniform(-0.5, 0.5, self.n_q), np.zeros(self.n_c, dtype=bool)
         problem = Problem(self.R @ v, self.abs_R @ np.abs(v), none, none, np.zeros(self.n_c), 1.0)
         x = self.settle(problem, np.zeros(self.n_c, dtype=int), np.zeros(self.n_r)).x
         terms = (self.abs_R @ (np.abs(v) + np.abs(x)))[self.normals]

@@ -293,3 +293,22 @@ def test_columns_of_ever_heavier_bodies_stick_and_slide_on_the_lightest(n, decad
     assert np.max(np.abs(run.friction_impulse[1:] / ((forward - pull) * borne) - 1.0)) < 3e-13
     assert np.max(np.abs(run.v[:, :n])) == 0.0
     assert np.max(np.abs(run.v[:, n:] - forward * run.t[:, None])) < 1e-7
+
+
+def test_beads_held_between_linked_ones_move_with_them():
+    """The joints had been taken to hold their contacts: velocities drawn to tell were means of their neighbours'."""
+    n, rng = 36, np.random.default_rng(0)
+    first = np.arange(0, n - 2, 4)
+    links = np.zeros((len(first), n))
+    links[np.arange(len(first)), first], links[np.arange(len(first)), first + 2] = 1.0, -1.0
+    column = np.eye(n) - np.eye(n, k=-1)
+    scene = Scene(
+        LinearSystem(sparse.eye_array(n), force=rng.normal(size=n)), np.zeros(n), np.zeros(n), (0.0, 0.2),
+        LinearContacts(sparse.csr_array(column), restitution=0.3), LinearJoints(sparse.csr_array(links)),
+    )  # fmt: skip
+    run = simulate(scene, Moreau(1e-2))
+    assert run.status is Status.DONE, run.message
+    for between in (1, 2):
+        np.testing.assert_allclose(run.q[:, first + between], run.q[:, first], atol=1e-12)
+    assert np.max(run.penetration) < 1e-12
+    assert np.ptp(run.q[-1]) > 1e-3
