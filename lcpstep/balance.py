@@ -8,9 +8,9 @@ Where steps resolve the motion the left side is below a hundredth of the right o
 mass turns with the place by radians in a step, energy comes or goes whatever the forces are, and nothing else tells;
 likewise where a wall throws a body back just before a centre of attraction. Impacts may take energy and give none, so
 that of steps with one what gains is told; with constant masses, since M' has no path over an impact.
-Steps by a tolerance are not asked, nor those that take the forces of a linear system implicitly. Explicit steps of
-order four grow without bound where damping takes more than 2.8 of a velocity in a step; along the motion that force
-does not change, so that the frequencies of `resolution` do not tell it.
+Steps by a tolerance are not asked, nor those that take the forces of a linear system implicitly (see `periods`).
+Explicit steps of order four grow without bound where damping takes more than 2.8 of a velocity in a step; along the
+motion that force does not change, so that the frequencies of `resolution` do not tell it.
 Source of the rule: E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), section IV.1.
 """
 
@@ -43,13 +43,13 @@ def unbalanced(run: Trajectory, m: Model, h: float) -> str:
     if len(steps) > LOOKS:
         times = len(steps) / LOOKS
         some = _surplus(run, m, h, (np.arange(LOOKS) * times).astype(int), times)
-        if not (_words(*some) or _words(*_surplus(run, m, h, _sudden(run), 1.0))):
-            return _words(*_gain_at_impacts(run, m, h))
+        if not (in_words(*some) or in_words(*_surplus(run, m, h, _sudden(run), 1.0))):
+            return in_words(*_gain_at_impacts(run, m, h))
     # What some steps give and others take is no loss
-    return _words(*_surplus(run, m, h, steps, 1.0)) or _words(*_gain_at_impacts(run, m, h))
+    return in_words(*_surplus(run, m, h, steps, 1.0)) or in_words(*_gain_at_impacts(run, m, h))
 
 
-def _words(gained: float, turned_over: float) -> str:
+def in_words(gained: float, turned_over: float) -> str:
     """That this is more of the energy than steps that resolve the motion would give or take; "" where it is not."""
     if abs(gained) <= SHARE * turned_over:
         return ""

@@ -7,8 +7,12 @@ on the right. Forces taken implicitly leave it its energy, and turn it by 2 atan
 however fast it is, so that whatever is faster seems to have the period 2h, and q goes to and fro between two steps.
 Beyond a quarter of a period nothing of it is right but its energy; so it is with dampers, that turn a velocity round
 where they should stop it. Springs may be as stiff as they like while they carry but a small part of the energy, or
-hold a load at rest: then they are rods. Steps by a tolerance are not asked, nor those that follow linear forces in
-closed form, or explicitly (`resolution`).
+hold a load at rest: then they are rods. Steps of theta < 1/2 also feed every motion, whatever its period: each by
+
+    (1/2 - theta) (dv^T M dv + dq^T K dq)
+
+That is told where it is a part of the energy (`balance`). Steps by a tolerance are not asked, nor those that follow
+linear forces in closed form, or explicitly (`resolution`).
 Source: T. J. R. Hughes, The Finite Element Method (2000), section 9.3: period elongation of the trapezoidal rule.
 """
 
@@ -19,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import LinearSystem
+from lcpstep.balance import in_words
 from lcpstep.depth import fixed_step
 from lcpstep.trajectory import Status, Trajectory
 
@@ -43,15 +48,32 @@ def overleapt(run: Trajectory) -> str | None:
     if run.counts.steps <= LEAST or len(run.t) <= LEAST or run.status != Status.DONE:
         return ""
     h = fixed_step(run.method)
-    if h == 0.0 or not _stiff(run, h):
+    if h == 0.0:
         return ""
-    return _skipped(run, system, h)
+    return (_skipped(run, system, h) if _stiff(run, h) else "") or _fed(run, system, h)
+
+
+def _steps(run: Trajectory, h: float) -> tuple[Any, int]:
+    """Kept states from which a step of h without an impact leads to the next, of so many that are looked at."""
+    k = np.unique(np.linspace(0, len(run.t) - 2, LOOKS).astype(int))
+    return k[(np.abs(run.t[k + 1] - run.t[k] - h) < LENGTH * h) & ~run.impulse[k + 1].any(axis=1)], len(k)
+
+
+def _fed(run: Trajectory, system: LinearSystem, h: float) -> str:
+    """How much energy steps of theta < 1/2 have given, in words."""
+    less = 0.5 - getattr(run.method, "theta", 0.5)
+    k, looks = _steps(run, h)
+    if less <= 0.0 or len(k) == 0:
+        return ""
+    q, v, times = run.q, run.v, run.counts.steps / looks
+    before, after = (0.5 * _energy(system, q[i], v[i]) for i in (k, k + 1))
+    given = less * np.sum(_energy(system, q[k + 1] - q[k], v[k + 1] - v[k]))
+    return in_words(times * given, np.max(after) + times * np.sum(np.abs(after - before)))
 
 
 def _skipped(run: Trajectory, system: LinearSystem, h: float) -> str:
     """The same of steps h, as the states at both their ends tell."""
-    k = np.unique(np.linspace(0, len(run.t) - 2, LOOKS).astype(int))
-    k = k[(np.abs(run.t[k + 1] - run.t[k] - h) < LENGTH * h) & ~run.impulse[k + 1].any(axis=1)]
+    k, _ = _steps(run, h)
     if len(k) < LEAST:
         return ""
     q, v, rest = run.q, run.v, np.mean(run.q[k], axis=0)

@@ -112,6 +112,27 @@ def test_an_oscillation_that_grows_beyond_all_is_told_and_a_fall_is_not(stiff, t
     assert (TOLD in run.doubt) is told
 
 
+@pytest.mark.parametrize("made", [np.asarray, sparse.csr_array], ids=["dense", "sparse"])
+@pytest.mark.parametrize("theta", [0.0, 0.2, 0.4, 0.49, 0.5, 0.7])
+@pytest.mark.parametrize("turn", [0.01, 0.1, 1.0])
+def test_what_steps_of_theta_below_a_half_feed_is_told_where_it_is_a_part_of_the_energy(turn, theta, made):
+    """Of free oscillations it is known: in the run at h w = 1, theta = 0.4, 1e55 times the energy, in silence."""
+    steps, a = 800, turn * turn
+    run = simulate(oscillator(100.0, 0.1 * turn, steps, made=made), Moreau(0.1 * turn, theta))
+    grown = ((1.0 + (1.0 - theta) ** 2 * a) / (1.0 + theta**2 * a)) ** steps
+    energy = run.v[:, 0] ** 2 + 100.0 * run.q[:, 0] ** 2
+    np.testing.assert_allclose(energy[-1] / energy[0], grown, rtol=1e-9)
+    if not 1.04 < grown < 1.2:
+        assert ("its steps gain energy" in run.doubt) is (grown > 1.2)
+
+
+@pytest.mark.parametrize("contacts", [None, LinearContacts(1.0, 1.0, 0.7)])
+def test_nor_is_a_fall_or_what_dampers_take_again(contacts):
+    for system in (LinearSystem(1.0, force=-9.81), LinearSystem(1.0, C=1.0, K=100.0, force=30.0)):
+        scene = Scene(system, 1.0, 0.0, (0.0, 10.0 if contacts else 1.0), contacts)
+        assert simulate(scene, Moreau(1e-3, theta=0.0)).doubt == ""
+
+
 def test_runs_that_are_not_asked():
     """Steps that damp it, that follow it in closed form, or are chosen; and states that are too far apart."""
     scene = oscillator(1e4, 0.1)
