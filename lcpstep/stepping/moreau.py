@@ -26,7 +26,7 @@ class Moreau:
     Parameters
     ----------
     h : step [s]; the last step is shortened where h does not divide the span. With a tolerance: the longest step
-    theta : 0 explicit, 1/2 trapezoidal (keeps the energy of linear systems), 1 implicit
+    theta : 0 explicit, 1/2 trapezoidal (keeps the energy of linear systems), 1 implicit; below 1/2 oscillations grow
     lcp : solver of the complementarity problems, "lemke" (compiled with the loop) or any name that
         `lcpstep.solve_lcp` takes: "qp", "qp:daqp", ...; joints, friction and projection take "lemke" only
     projected : put positions back onto joints and out of obstacles at the end of every step
