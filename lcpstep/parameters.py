@@ -40,7 +40,7 @@ from lcpstep.recording import Keep
 from lcpstep.simulation import Method, simulate
 from lcpstep.stepping.located import Located
 from lcpstep.stepping.moreau import Moreau
-from lcpstep.trajectory import Kind, Trajectory
+from lcpstep.trajectory import Kind, Status, Trajectory
 
 METHODS: dict[str, type] = {"moreau": Moreau, "located": Located, "event-driven": EventDriven}
 TOP = ("scene", "t_end", "method", "parameters", "sweep", "outputs")
@@ -201,6 +201,8 @@ class ParameterStudy:
             return simulate(scene, self.method, keep=what, error=self.tells_errors)
         except SimulationError as error:
             found: Trajectory = error.trajectory
+            if found.status == Status.DONE:  # no motion that fails, but a scene with a wrong derivative
+                raise
             return found
 
     def _labelled(self, scene: Scene, rows: list[dict[str, Any]], ended: list[str]) -> Any:

@@ -14,8 +14,9 @@ import json
 import logging
 import os
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import checks
-from lcpstep.errors import LcpStepError, SweepInterrupted, SweepStopped
+from lcpstep.errors import SweepInterrupted, SweepStopped
 from lcpstep.files import replacing
 from lcpstep.pace import tell, until_given_up
 
@@ -33,6 +34,7 @@ Work = Callable[[Any, Arrays | None], tuple[Arrays, Arrays | None]]
 MANIFEST = "manifest.json"
 CARRY = "carry:"  # before the names of what a part hands to the next
 SEAL = "seal"
+MARK = "of_the_work"  # attribute of errors
 
 
 def sweep(
@@ -63,6 +65,7 @@ def sweep(
 
     Raises
     ------
+    TypeError   executor is none
     ValueError   jobs is not positive
     SweepStopped   the executor died, or `out` holds another sweep; finished parts are kept
     SweepInterrupted   a KeyboardInterrupt; finished parts are kept, and the pool's threads give the others up
@@ -72,17 +75,20 @@ def sweep(
     results = [[store.load(i, k) for k in range(len(chain))] for i, chain in enumerate(chains)]
     total = sum(len(chain) for chain in chains)
     own, given_up = None, threading.Event()
+    work = partial(_marked, work)
     if executor is None:
         jobs = (os.cpu_count() or 1) if jobs is None else checks.count("jobs", jobs)
         own = executor = ThreadPoolExecutor(max_workers=jobs)
         work = partial(until_given_up, given_up, work)
+    checks.has("executor", executor, "submit", "a concurrent.futures.Executor")
     running: dict[Future[Any], tuple[int, int]] = {}
 
     def take(future: Future[Any]) -> int:
         i, k = running.pop(future)
         arrays, handed = future.result()
         results[i][k] = (arrays, handed)
-        store.save(i, k, arrays, handed)
+        with _marking():
+            store.save(i, k, arrays, handed)
         return i
 
     try:
@@ -100,7 +106,7 @@ def sweep(
         raise SweepInterrupted(f"interrupted; {_words(results, total, out)}") from None
     except Exception as error:
         _keep_finished(running, take)
-        if _of_the_work(error):
+        if hasattr(error, MARK):
             raise
         raise SweepStopped(
             f"the executor failed ({type(error).__name__}: {error}); {_words(results, total, out)}"
@@ -123,8 +129,11 @@ def _keep_finished(running: dict[Future[Any], tuple[int, int]], take: Callable[[
 
 def _words(results: list[list[Any]], total: int, out: Path | str | None) -> str:
     """What there is of a sweep that could not go on."""
+    done = sum(part is not None for chain in results for part in chain)
+    if not done:
+        return "no part was finished"
     kept = f"kept in {out}, the same call goes on from there" if out else "lost: no folder was given"
-    return f"{sum(part is not None for chain in results for part in chain)} of {total} parts are {kept}"
+    return f"{done} of {total} parts are {kept}"
 
 
 def report(progress: Callable[[int, int], None] | None, results: list[list[Any]], total: int) -> None:
@@ -132,7 +141,8 @@ def report(progress: Callable[[int, int], None] | None, results: list[list[Any]]
     done = sum(part is not None for chain in results for part in chain)
     tell(done, total)
     if progress is not None:
-        progress(done, total)
+        with _marking():
+            progress(done, total)
 
 
 def _submit(
@@ -147,9 +157,20 @@ def _submit(
             return
 
 
-def _of_the_work(error: Exception) -> bool:
-    """Whether an error came from the work itself and not from the executor that did it."""
-    return isinstance(error, (LcpStepError, ValueError, TypeError, ArithmeticError, FileExistsError))
+@contextmanager
+def _marking() -> Generator[None, None, None]:
+    """Mark errors that are none of an executor's; the mark goes with them from process to process."""
+    try:
+        yield
+    except Exception as error:
+        setattr(error, MARK, True)
+        raise
+
+
+def _marked(work: Work, part: Any, handed: Arrays | None) -> tuple[Arrays, Arrays | None]:
+    """The work, whose errors are told from those of whatever executor does it."""
+    with _marking():
+        return work(part, handed)
 
 
 class Store:

@@ -69,6 +69,10 @@ def _several_periods(scene: Scene, method: Method, task: Task, x: Array, n: int)
     try:
         run = simulate(one, method, keep=ends)
     except SimulationError as error:
+        if (
+            error.trajectory.status == Status.DONE
+        ):  # no motion that fails, but a scene with a wrong derivative
+            raise
         return None, int(error.trajectory.status)
     return (run if run.status == Status.DONE else None), int(run.status)
 

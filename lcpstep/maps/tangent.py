@@ -46,6 +46,8 @@ def carry(s: Flight, J: Doubles, tau: float) -> None:
 
 def strike(s: Flight, J: Doubles, t: float, u: float) -> None:
     """An impact at time t with the gap velocity u before it; s: a flight that may be asked, and is not under way."""
+    if J[0] == J[1] == J[2] == J[3] == 0.0:
+        return  # at rest all was forgotten, and an obstacle whose velocity jumps strikes there with u = 0
     s.find_corners(t)
     turn = (1.0 + s.r) * alpha_at(s, t) / u
     for j in range(2):

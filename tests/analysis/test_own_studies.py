@@ -6,10 +6,13 @@ from functools import partial
 import numpy as np
 import pytest
 
-from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System
+from lagrangian import Contacts, Harmonic, LinearContacts, LinearSystem, Scene, System
+from lcpstep import EventDriven
 from lcpstep.analysis.bifurcation import bifurcation
 from lcpstep.described import checksum
-from lcpstep.errors import SweepStopped
+from lcpstep.errors import SimulationError, SweepStopped
+from lcpstep.maps import StroboscopicMap
+from lcpstep.parameters import ParameterStudy
 
 FEW = {"drop": 3, "keep": 2}
 
@@ -88,3 +91,31 @@ def test_a_start_inside_of_the_obstacle_is_told_at_every_value_that_has_it(start
     )
     assert found.status.values.tolist() == [[-1, -1, -1, 0]]
     assert np.isfinite(found.q.values[0, :, 0, 0]).tolist() == [False, False, False, True]
+
+
+def two_gaps(t, q, v, p, out):
+    out[0], out[1] = 1.0 - q[0] - 0.1 * q[0] ** 2, 1.0 + q[0]
+
+
+def wrong_above(t, q, v, p, out):
+    out[0, 0] = -1.0 - (0.2 if q[0] < 0.3 else 0.1) * q[0]
+    out[1, 0] = 1.0
+
+
+def pushed(t, q, v, p, out):
+    out[0] = -q[0] - 0.1 * v[0] + 2.0 * math.cos(p[0] * t)
+
+
+def test_a_scene_whose_derivative_is_wrong_where_it_does_not_begin_is_refused_by_maps_and_studies():
+    def make(values):
+        stops = Contacts(2, two_gaps, wrong_above, restitution=0.5)
+        w = values["w"]
+        return made(pushed, q0=0.0, contacts=stops, parameters={"w": w}, period=2.0 * math.pi / w)
+
+    with pytest.raises(SimulationError, match=r"jacobian\[0, 0\] is .* but differences"):
+        StroboscopicMap(make({"w": 1.3}), EventDriven())([0.0, 0.5])
+    study = ParameterStudy.read(
+        'scene = "x"\nt_end = 5.0\n[sweep]\nw = [1.3]\n[outputs]\nmeasures = ["q_end"]'
+    )
+    with pytest.raises(SimulationError, match=r"jacobian\[0, 0\] is .* but differences"):
+        study.run(make)

@@ -16,7 +16,7 @@ from lagrangian.scenes import cam_follower
 from lcpstep import Moreau
 from lcpstep.analysis.bifurcation import bifurcation
 from lcpstep.dataset import save
-from lcpstep.errors import SweepStopped
+from lcpstep.errors import NotWritten, SweepStopped
 from lcpstep.sweep import MANIFEST, sweep
 from tests.marks import slow
 from tests.processes import ROOT
@@ -61,6 +61,35 @@ def test_what_was_finished_is_not_done_again(tmp_path):
     assert [chain[0]["squares"].tolist() for chain in done] == [[0.0], [1.0], [4.0], [9.0], [16.0]]
     assert all((tmp_path / "s" / name).stat().st_mtime_ns == stamp for name, stamp in parts.items())
     assert not list((tmp_path / "s").glob("*.partial"))
+
+
+class Diverged(RuntimeError):
+    pass
+
+
+def diverging(part, handed):
+    if part == [3]:
+        raise Diverged("beyond the table")
+    return squares(part, handed)
+
+
+@pytest.mark.parametrize("pool", [ThreadPoolExecutor, ProcessPoolExecutor])
+def test_an_error_of_the_work_of_whatever_kind_is_raised_as_it_is(tmp_path, pool):
+    with pool(1) as executor, pytest.raises(Diverged, match="beyond the table"):
+        sweep(diverging, [[[k]] for k in range(5)], {}, out=tmp_path / "s", executor=executor)
+    assert len(list((tmp_path / "s").glob("part-*.npz"))) >= 3
+
+
+def test_a_folder_that_is_gone_is_no_failure_of_the_executor(tmp_path):
+    def vanish(done, total):
+        (tmp_path / "s" / MANIFEST).unlink()
+        (tmp_path / "s").rmdir()
+        (tmp_path / "s").write_text("a file in its place")
+
+    with pytest.raises(NotWritten, match="part-00000-00000"):
+        sweep(squares, [[[1]]], {}, out=tmp_path / "s", progress=vanish)
+    with pytest.raises(TypeError, match="executor: expected a"):
+        sweep(squares, [[[1]]], {}, executor=2)
 
 
 def test_a_folder_of_another_sweep_is_refused(tmp_path):

@@ -5,8 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
 from lagrangian.scenes import cam_follower, impact_oscillator
 from lcpstep import EventDriven
+from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps, continue_point
 from lcpstep.analysis.derivative import differences
@@ -58,6 +60,27 @@ def test_a_motion_that_lands_forgets_everything():
     P = PeriodMap(cam_follower(rpm=125.0), EventDriven())
     assert np.all(P.along([0.0, 0.0], 3, 3)[1] == 0.0)
     assert lyapunov(P, [0.0, 0.0], 50).largest == -math.inf
+
+
+def ramp(t, q, v, p, out):
+    """s = t (1 - t) / 2, again and again: its velocity jumps from -1/2 to 1/2."""
+    y = t - math.floor(t)
+    out[0, 0], out[0, 1], out[0, 2] = 0.5 * y * (1.0 - y), 0.5 - y, -1.0
+
+
+def test_a_body_at_rest_that_is_kicked_has_forgotten_everything():
+    # It rests on the ramp whose velocity jumps under it, and goes on at rest as the ramp falls slower than it would
+    body = LinearSystem(M=1.0, force=Harmonic(constant=-9.81))
+    table = LinearContacts(G=1.0, restitution=0.3, motion=ramp)
+    scene = Scene(body, 0.2, 0.0, (0.0, 1.0), contacts=table, period=1.0, corners=[0.0])
+    P = PeriodMap(scene, EventDriven(), 0.6)
+    x = P.follow([0.3, 0.0], 5).final[0]
+    assert x == pytest.approx([0.12, -0.1], abs=1e-12)
+    assert P.follow(x, 1).impacts[0, 0] == 1  # the kick
+    assert np.array_equal(P.jacobian(x), np.zeros((2, 2)))
+    assert np.array_equal(P.differentiated(x), np.zeros((2, 2)))
+    found = attractors(scene, EventDriven(), [[0.3, 0.0]], phase=0.6).found
+    assert [a.lyapunov.largest for a in found] == [-math.inf]
 
 
 def test_the_exponent_of_a_periodic_orbit_is_that_of_its_multipliers():
