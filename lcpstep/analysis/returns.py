@@ -23,6 +23,7 @@ TOLERANCE = 1e-6  # of a return, relative to the size of the motion
 FAR, LEAST = 0.1, 1e-4
 SAMPLES = 33  # of a period
 QUARTERS, FALLEN = 4, 0.5  # of a window; what a change falls to at least, from the first to the last of them
+SLOWLY = 1e-3  # share by which a change falls clearly, to be extrapolated
 # Of a motion that grows without bound: times its starts; from quarter to quarter
 RUNAWAY, GROWING = 1e6, 10.0
 KICKS, KICK = 3, 1e-10  # rounds of a cycle on which it is tried, and with what share of the motion's size
@@ -36,9 +37,34 @@ def return_time(states: Array, longest: int, tolerance: float) -> int:
     return 0
 
 
+def in_the_end(states: Array, n: int) -> int:
+    """The part of n periods after which a motion that changes little over n will return at last; n where none is.
+
+    Near a flip a motion alternates about its orbit, ever less, and changes by less over two turns than over one. What
+    it changes by over one goes to zero: the limit is told by Aitken's extrapolation, some n periods apart.
+    """
+    for m in (m for m in range(1, n) if n % m == 0):
+        leap = (len(states) - 1 - m) // (2 * n) * n
+        at = -1 - leap * np.arange(2, -1, -1)
+        first, middle, last = np.max(np.abs(states[at] - states[at - m]), axis=1)
+        before, after = first - middle, middle - last
+        slowly = (
+            after > SLOWLY * last and before > after and abs(last - after**2 / (before - after)) < last / 2
+        )
+        if leap and (slowly or last < FALLEN * first):
+            return m
+    return n
+
+
+def settled_time(states: Array, longest: int, tolerance: float) -> int:
+    """The return time, or 0 where the motion will return sooner than that, but not yet within the tolerance."""
+    n = return_time(states, longest, tolerance)
+    return n if in_the_end(states, n) == n else 0
+
+
 def return_times(states: Array, longest: int, tolerance: Array) -> NDArray[np.int64]:
     """The same of motions (m, window, d) with a tolerance for each, (m,)."""
-    times = [return_time(x, longest, float(near)) for x, near in zip(states, tolerance, strict=True)]
+    times = [settled_time(x, longest, float(near)) for x, near in zip(states, tolerance, strict=True)]
     return np.array(times, dtype=np.int64)
 
 
@@ -128,13 +154,16 @@ def periods_to_settle(states: Array, longest: int) -> int:
     """After how many periods a motion (window, d) will come back within TOLERANCE; 0 where it does not approach.
 
     It approaches where the largest change over n periods falls from each quarter of the window to the next, for the
-    n <= longest that it changes least over.
+    n <= longest that it changes least over, or the part of it after which it returns in the end.
     """
-    size, best = max(float(np.max(np.abs(states))), 1e-300), np.full(QUARTERS, math.inf)
-    for n in range(1, min(longest, len(states) // 2) + 1):
+
+    def changes(n: int) -> Array:
         change = np.max(np.abs(states[n:] - states[:-n]), axis=1)
-        largest = np.array([np.max(quarter) for quarter in np.array_split(change, QUARTERS)])
-        best = largest if largest[-1] < best[-1] else best
+        return np.array([np.max(quarter) for quarter in np.array_split(change, QUARTERS)])
+
+    size = max(float(np.max(np.abs(states))), 1e-300)
+    least = min(range(1, min(longest, len(states) // 2) + 1), key=lambda n: changes(n)[-1])
+    best = changes(in_the_end(states, least))
     falling = np.all(np.diff(best) < 0.0) and best[-1] < FALLEN * best[0]
     if not falling or best[-1] <= 0.0:
         return 0

@@ -14,13 +14,14 @@ from lcpstep.analysis.border_collision import BorderCollision, PiecewiseLinearMa
 from lcpstep.analysis.fixed_points import PeriodicPoint
 from lcpstep.analysis.map_border import border_point
 from lcpstep.analysis.map_diagram import STARTS, Escaped, exponent, map_diagram, periodic_points, settled
-from lcpstep.analysis.returns import TOLERANCE, return_time
+from lcpstep.analysis.returns import TOLERANCE, settled_time
 from lcpstep.cli.common import DONE, number
 from lcpstep.cli.studies import PARTS, files, finish, parts_bar, stopped
 from lcpstep.errors import UnknownName
 from lcpstep.maps.formulas import MAPS, Family, named, piecewise_linear
 
 OWN = "piecewise-linear"
+SETTLING = "not settled yet, or of a long period: take a larger --drop"
 MATRICES = ("A-minus", "A-plus", "B-minus", "B-plus", "C")
 LONGEST = 64  # period that is recognised
 MARGIN = 1.0  # of the box in which periodic points are looked for, in sizes of the orbit
@@ -142,10 +143,12 @@ def _described(options: argparse.Namespace, family: Family) -> dict[str, Any]:
         orbit, result["orbit"] = np.atleast_2d(np.asarray(x0, dtype=float)), str(error)
     else:
         size = max(float(np.max(np.abs(orbit))), 1e-300)
-        n = return_time(orbit, min(LONGEST, len(orbit) // 2), TOLERANCE * size)
+        n = settled_time(orbit, min(LONGEST, len(orbit) // 2), TOLERANCE * size)
         found = exponent(P, orbit[0], options.keep, n)
+        restless = "aperiodic" if found.largest >= -found.least else SETTLING
+        restless = "chaotic" if found.chaotic else restless
         result |= {
-            "orbit": f"period {n}" if n else "chaotic" if found.chaotic else "aperiodic",
+            "orbit": f"period {n}" if n else restless,
             "points": (orbit[: n or 1] + 0.0).tolist(),
             "lyapunov": found.largest if math.isfinite(found.largest) else str(found.largest),
             "lyapunov_error": found.error if math.isfinite(found.error) else str(found.error),

@@ -9,13 +9,13 @@ import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
 from lagrangian.scenes import ball_on_table, cam_follower, chaotic_oscillator, driven_bilinear_oscillator
-from lagrangian.scenes.table import sine_table
+from lagrangian.scenes.table import orbit_trace, sine_table
 from lcpstep import EventDriven, Moreau
 from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.bifurcation import bifurcation
 from lcpstep.analysis.likeness import Sample, likeness, sample
 from lcpstep.analysis.lyapunov import lyapunov
-from lcpstep.analysis.returns import return_time, return_times, survive
+from lcpstep.analysis.returns import in_the_end, return_time, return_times, settled_time, survive
 from lcpstep.analysis.starts import outside, random_starts
 from lcpstep.maps import periods
 from tests.analysis.test_maps import table
@@ -51,6 +51,35 @@ def test_return_times_of_the_logistic_map():
         for _ in range(3000):
             x.append(a * x[-1] * (1.0 - x[-1]))
         assert return_time(np.array(x[-200:])[:, None], 60, 1e-9) == n
+
+
+@pytest.mark.parametrize(
+    ("a", "dropped", "n"), [(2.98, 400, 1), (2.995, 1500, 1), (2.9, 90, 1), (3.01, 2000, 2)]
+)
+def test_a_motion_that_still_alternates_about_its_orbit_has_not_twice_its_period(a, dropped, n):
+    # The multiplier 2 - a of the point of period one is near -1, and changes over two iterations are small
+    x = [0.3]
+    for _ in range(dropped + 400):
+        x.append(a * x[-1] * (1.0 - x[-1]))
+    states = np.array(x)[:, None]
+    assert return_time(states[dropped : dropped + 240], 60, 1e-6) == 2
+    assert settled_time(states[dropped : dropped + 240], 60, 1e-6) == (2 if n == 2 else 0)
+    assert in_the_end(states[dropped : dropped + 240], 2) == n
+
+
+@pytest.mark.parametrize(("transient", "name"), [(100, "unsettled"), (300, "O(1, 1)")])
+def test_a_ball_just_below_its_flip_is_not_taken_for_one_of_period_two(transient, name):
+    omega, r = 40.0, 0.5
+    near, far = 0.00643, 0.0095  # [m]: the trace falls from one amplitude to the other
+    for _ in range(60):  # until the multipliers are -0.9 and r^2 / -0.9
+        amplitude = 0.5 * (near + far)
+        above = orbit_trace(amplitude, omega, 9.81, r) > -0.9 - r**2 / 0.9
+        near, far = (amplitude, far) if above else (near, amplitude)
+    scene = ball_on_table(amplitude=amplitude, omega=omega, restitution=r)
+    q, v = (float(np.ravel(x)[0]) for x in scene.exact(np.array([scene.period / 2.0])))
+    (found,) = attractors(scene, EventDriven(), [[q + 1e-4, v - 0.01]], transient=transient, phase=0.5).found
+    assert found.name == name
+    assert found.lyapunov.largest == pytest.approx(math.log(0.9), abs=1e-4)
 
 
 def test_the_ball_on_a_table_goes_to_its_orbit_of_period_one():
