@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene, checks
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
+from lcpstep.lengths import sizes
 from lcpstep.maps.local import Local
 from lcpstep.simulation import simulate
 from lcpstep.trajectory import IMPACT_DTYPE, Kind, Status, Trajectory
@@ -20,6 +21,7 @@ Array = NDArray[np.float64]
 Family = Callable[[float], Scene]
 SIDE = 1e-9  # of the period: how far from a corner a jump of velocities is looked for
 JUMP = 1e-6  # of the gap velocity, relative: a jump this large makes a corner one of degree one
+SAMPLES = 32  # of a period, that tell how large a motion is
 SOFT = 1e-6  # of the largest gap velocity: an impact softer than this grazes
 
 
@@ -101,7 +103,7 @@ class Pieces:
         if np.min(speeds) < SOFT * np.max(speeds):
             raise NotDifferentiable("an impact of the orbit grazes: its speed is zero to rounding")
         self.pause(corners[self.corner] + self.turn, np.delete(times, i))
-        self.check_degree(scene)
+        self.check_degree(scene, float(np.max(speeds)))
 
     def pause(self, at: float, others: Array) -> None:
         """Phases half way from the corner impact to its neighbours, or to the section."""
@@ -109,8 +111,15 @@ class Pieces:
         right = min([self.phase + self.n, *others[others > at]])
         self.pauses = (left if left == self.phase else 0.5 * (left + at), 0.5 * (right + at))
 
-    def check_degree(self, scene: Scene) -> None:
-        """The gap velocity must be continuous at the corner."""
+    def scales(self, x: Array, p: float) -> Array:
+        """How large the state from x on and the parameter are: what steps and residuals of (x, p) are a share of."""
+        T = self.make(p).period
+        times = np.linspace(self.phase, self.phase + self.n, SAMPLES * self.n + 1) * T
+        run = self.run(self.make(p), x, times[0], times[-1], times)
+        return np.append(sizes(run), abs(p) or 1.0)
+
+    def check_degree(self, scene: Scene, speed: float) -> None:
+        """The gap velocity must be continuous at the corner; speed: of the orbit's impacts."""
         t = (float(np.asarray(scene.corners)[self.corner])) + self.turn * scene.period
         q, v, p = (np.asarray(x, dtype=float) for x in (scene.q0, scene.v0, scene.p))
         early, late = (scene.gap(t + s * SIDE * scene.period, q, v)[1][0] for s in (-1.0, 1.0))
@@ -122,7 +131,7 @@ class Pieces:
                 for s in (-1.0, 1.0)
             )
             jump = max(jump, float(np.max(np.abs(after[:, 1] - before[:, 1]))))
-        if jump > JUMP * max(1.0, abs(early)):
+        if jump > JUMP * max(speed, abs(early)):
             raise NotDifferentiable(
                 f"corner {self.corner} is of degree one: the velocity jumps by {jump:.3g} there, where only the "
                 f"acceleration may"
@@ -202,10 +211,14 @@ class Pieces:
         """The state at b of the motion without contacts from x at a."""
         return self.moved(replace(scene, contacts=None), x, a, b)
 
-    def run(self, scene: Scene, x: Array, a: float, b: float) -> Trajectory:
-        """The motion from x at a."""
+    def run(self, scene: Scene, x: Array, a: float, b: float, keep: Array | None = None) -> Trajectory:
+        """The motion from x at a; its end alone, or the states at these times."""
         n = scene.n_q
-        run = simulate(replace(scene, q0=x[:n], v0=x[n:], t_span=(a, b), exact=None), self.method, keep=[b])
+        run = simulate(
+            replace(scene, q0=x[:n], v0=x[n:], t_span=(a, b), exact=None),
+            self.method,
+            keep=[b] if keep is None else keep,
+        )
         if run.status != Status.DONE:
             raise LcpStepError(f"the motion from x = {x.tolist()} at t = {a:g} s ended early: {run.message}")
         return run

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -80,8 +81,9 @@ def corner_impact(
     x = np.array(checks.array("x", x, (2 * scene.n_q,)))
     pieces = Pieces(make, method or EventDriven(), phase, checks.count("n", n))
     pieces.aim(p, x, corner)
-    size = np.append(np.maximum(1.0, np.abs(x)), 1.0)
     z: Array = np.append(x, p)
+    scale = pieces.scales(x, p)
+    size = np.append(scale[:-1], np.max(scale[: len(x) // 2]))  # of the way round, and of the gap
     before, best = math.inf, z
     for _ in counted(range(MAX_ITERATIONS)):
         F = pieces.closing(z)
@@ -91,7 +93,7 @@ def corner_impact(
         if not error < 10.0 * before:
             break
         before, best = error, z
-        z = z - np.linalg.solve(differences(pieces.closing, z), F)
+        z = z - np.linalg.solve(differences(pieces.closing, z, scale=scale), F)
     raise LcpStepError(
         f"no periodic orbit with an impact at corner {pieces.corner} near p = {p:.9g}: residual {error:.3g}"
     )
@@ -135,8 +137,9 @@ def discontinuity_map(orbit: CornerImpact, method: EventDriven | None = None) ->
     image = np.concatenate([q, local.after_impact(t, q, v)])
     G, u = local.rates(t, q, v)
     H_y = np.concatenate([G, np.zeros(n)])
-    H_p = float(differences(lambda s: pieces.gap(y, float(s[0])), np.array([p]), WIDE, EIGHTH)[0, 0])
-    R_p = differences(lambda s: pieces.rebound(y, float(s[0])), np.array([p]), WIDE, EIGHTH)[:, 0]
+    of_p = partial(differences, x=[p], step=WIDE, stencil=EIGHTH, scale=pieces.scales(orbit.x, p)[-1:])
+    H_p = float(of_p(lambda s: pieces.gap(y, float(s[0])))[0, 0])
+    R_p = of_p(lambda s: pieces.rebound(y, float(s[0])))[:, 0]
     R_y, _ = impact_law(local, t, q, v)
 
     def surplus(at: float) -> Array:
@@ -174,8 +177,9 @@ def local_map(
     def second(z: Array) -> Array:
         return pieces.from_corner(z[:d], float(z[d]))
 
-    F1 = differences(first, np.append(orbit.x, orbit.p), step, EIGHTH)
-    F2 = differences(second, np.append(Z.image, orbit.p), step, EIGHTH)
+    scale = pieces.scales(orbit.x, orbit.p)
+    F1 = differences(first, np.append(orbit.x, orbit.p), step, EIGHTH, scale)
+    F2 = differences(second, np.append(Z.image, orbit.p), step, EIGHTH, scale)
     F1_x, F1_p, F2_y, F2_p = F1[:, :d], F1[:, d], F2[:, :d], F2[:, d]
     if (
         not len(orbit.others) and Local(orbit.scene).model.linear

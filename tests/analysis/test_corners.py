@@ -212,3 +212,59 @@ def test_the_command_names_the_files_it_wrote(capsys, tmp_path):
     for quiet in (Namespace(out=None, json=False), Namespace(out=tmp_path, json=True)):
         corner._tell_files(quiet, "corner.json")
     assert capsys.readouterr().out == ""
+
+
+def ridge(t, q, v, p, out):
+    """Table whose velocity rises and falls like the sides of a tent, p = (period, share that rises, acceleration)."""
+    T, c, a = p[0], p[1], p[2]
+    y = (t / T) % 1.0
+    rising = a * c * T  # by how much the velocity rises; its mean is zero
+    if y < c:
+        tau, out[0, 2] = y * T, a
+        out[0, 0], out[0, 1] = 0.5 * tau * (a * tau - rising), a * tau - 0.5 * rising
+    else:
+        tau, out[0, 2] = (y - c) * T, -a * c / (1.0 - c)
+        out[0, 0], out[0, 1] = 0.5 * tau * (out[0, 2] * tau + rising), out[0, 2] * tau + 0.5 * rising
+
+
+@pytest.mark.parametrize(("length", "time"), [(1.0, 1.0), (1e-6, 1.0), (1e-3, 1e-3), (1e5, 1e2)])
+def test_a_ball_whose_impact_meets_the_corner_of_a_table_is_found_in_any_units(length, time):
+    # One impact a period T: the ball leaves with g T / 2 and comes back so, and the table has g T (1 - r) / (2 + 2 r)
+    T, c, a, r = 1.3 * time, 0.4, 6.0 * length / time**2, 0.7
+    highest = 0.5 * a * c * T
+    g = 2.0 * (1.0 + r) / (1.0 - r) * highest / T
+
+    def make(weight):
+        ball = LinearSystem(M=1.0, force=-weight)
+        table = LinearContacts(G=1.0, restitution=r, motion=ridge)
+        start = (10.0 * length, 0.0, (0.0, T))
+        return Scene(ball, *start, contacts=table, p=[T, c, a], corners=[0.0, c * T], period=T)
+
+    x = np.array([0.125 * g * T**2, 1e-3 * g * T])  # half way between two impacts, nearly
+    found = corner_impact(make, 0.98 * g, x, corner=1, phase=c + 0.5)
+    assert found.p == pytest.approx(g, rel=1e-10)
+    assert found.before == pytest.approx(-0.5 * g * T - highest, rel=1e-10)
+    chain = local_map(found)
+    flight = np.array([[1.0, 0.5 * T], [0.0, 1.0]])
+    fallen = np.array([-0.125 * T**2, -0.5 * T])  # by the weight, in half a period
+    rate, state = np.array([[1.0, time], [1.0 / time, 1.0]]), np.array([length, length / time])
+    sides = ((chain.A_minus, chain.B_minus, a), (chain.A_plus, chain.B_plus, -a * c / (1.0 - c)))
+    for A, B, bend in sides:
+        impact = np.array([[-r, 0.0], [-(1.0 + r) * (g + bend) / found.before, -r]])
+        assert A / rate == pytest.approx(flight @ impact @ flight / rate, abs=1e-8)
+        expected = flight @ impact @ fallen + fallen
+        assert g * (B - expected) / state == pytest.approx([0.0, 0.0], abs=1e-6)
+
+
+def test_a_velocity_that_jumps_is_one_however_slow_the_motion():
+    def make(weight):
+        def table(t, q, v, p, out):
+            y = t % 1.0
+            out[0, 0], out[0, 1], out[0, 2] = 1e-8 * y * (1.0 - y), 1e-8 * (1.0 - 2.0 * y), -2e-8
+
+        contact = LinearContacts(G=1.0, restitution=0.5, motion=table)
+        ball = LinearSystem(M=1.0, force=-weight)
+        return Scene(ball, 1e-6, 0.0, (0.0, 1.0), contacts=contact, corners=[0.0], period=1.0)
+
+    with pytest.raises(NotDifferentiable, match="degree one"):
+        corner_impact(make, 5e-8, [2e-8, 0.0], phase=0.5)
