@@ -40,8 +40,8 @@ class OrbitBranch:
     points : Branch   parameter, states on the section, multipliers, special points
     phase : of the section
     orbits : the orbits, in the same order
-    special : fold, flip, torus, branch point, jump; and "corner" (an impact at a corner of the forcing) and
-        "grazing" (where the branch ends by it)
+    special : fold, flip, torus, branch point, jump; and "corner" (an impact at a corner of the forcing; the branch
+        ends there where it meets another one) and "grazing" (where the branch ends by it)
     """
 
     points: Branch
@@ -133,11 +133,14 @@ def continue_orbit(
     # where a motion chatters its last impacts are soft everywhere, and no sign of a graze
     if branch.ended.startswith("no point") and isinstance(orbit.scene, Scene) and not orbits[-1].sticks:
         p_end, (value, x) = _grazing_parameter(orbits, branch.p), (float(branch.p[-1]), branch.x[-1])
+        p_corner = _vanishing(_from_corner, orbits, branch.p)  # where it turns back in a kink
         # where an impact comes or goes beside the end, no differences tell the derivative by the parameter
         reach = SPOILT * PARAMETER_STEP * (p_range[1] - p_range[0])
         changes = {_impacts(followed, value + step, x) for step in (-reach, 0.0, reach)}
         if _grazes(orbits[-1]) or (0.0 < abs(p_end - value) <= 2.0 * reach and len(changes) > 1):
             special.append(Special("grazing", p_end, x, branch.multipliers[-1]))
+        elif abs(p_corner - value) <= 2.0 * reach:
+            special.append(Special("corner", p_corner, x, branch.multipliers[-1]))
         elif _from_section(orbits[-1]) < AT_SECTION:
             branch = replace(
                 branch,
@@ -150,6 +153,11 @@ def _from_section(orbit: PeriodicOrbit) -> float:
     """Share of the period from the section to the impact nearest to it; infinite where there is none."""
     away = np.abs((orbit.phases - orbit.phase + 0.5) % 1.0 - 0.5)
     return float(np.min(away, initial=np.inf))
+
+
+def _from_corner(orbit: PeriodicOrbit) -> float:
+    """Share of the period from a corner of the forcing to the impact nearest to one; infinite where there is none."""
+    return float(np.min(np.abs(orbit.corner_distances()), initial=np.inf))
 
 
 def _impacts(

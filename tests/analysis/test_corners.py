@@ -9,6 +9,7 @@ from lcpstep.analysis.border_collision import classify
 from lcpstep.analysis.chattering import corner_crossings, sequences
 from lcpstep.analysis.corner_estimate import agreement, estimate
 from lcpstep.analysis.corners import NotDifferentiable, corner_impact, discontinuity_map, local_map
+from lcpstep.analysis.orbits import continue_orbit, periodic_orbit
 from lcpstep.maps import StroboscopicMap, iterate
 
 
@@ -227,6 +228,31 @@ def ridge(t, q, v, p, out):
         out[0, 0], out[0, 1] = 0.5 * tau * (out[0, 2] * tau + rising), out[0, 2] * tau + 0.5 * rising
 
 
+def over_a_ridge(weight, T, c, a, r):
+    """Ball above that table."""
+    contact = LinearContacts(G=1.0, restitution=r, motion=ridge)
+    start, forcing = (10.0 * a * T**2, 0.0, (0.0, T)), {"corners": [0.0, c * T], "period": T}
+    return Scene(LinearSystem(M=1.0, force=-weight), *start, contacts=contact, p=[T, c, a], **forcing)
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_a_branch_that_ends_at_a_corner_says_so(late):
+    # The table goes no faster than at its corner, and so the ball on it can be no heavier than there
+    T, c, a, r = 1.0, 0.4, 6.0, 0.7
+    g = (1.0 + r) / (1.0 - r) * a * c
+    weight = 0.97 * g
+    at = c + (
+        0.03 * 0.5 * (1.0 - c) if late else -0.03 * 0.5 * c
+    )  # of the impact: its velocity is 0.97 of the highest
+    table = np.zeros((1, 3))
+    ridge(at, None, None, [T, c, a], table)
+    x = [table[0, 0] + 0.125 * weight * T**2, 0.0]
+    orbit = periodic_orbit(over_a_ridge(weight, T, c, a, r), x, phase=(at + 0.5) % 1.0)
+    assert orbit.phases == pytest.approx([at], abs=1e-9)
+    branch = continue_orbit(lambda p: over_a_ridge(p, T, c, a, r), orbit, weight, (0.9 * g, 1.1 * g))
+    assert [(s.kind, s.p) for s in branch.special] == [("corner", pytest.approx(g, rel=1e-8))]
+
+
 @pytest.mark.parametrize(("length", "time"), [(1.0, 1.0), (1e-6, 1.0), (1e-3, 1e-3), (1e5, 1e2)])
 def test_a_ball_whose_impact_meets_the_corner_of_a_table_is_found_in_any_units(length, time):
     # One impact a period T: the ball leaves with g T / 2 and comes back so, and the table has g T (1 - r) / (2 + 2 r)
@@ -235,10 +261,7 @@ def test_a_ball_whose_impact_meets_the_corner_of_a_table_is_found_in_any_units(l
     g = 2.0 * (1.0 + r) / (1.0 - r) * highest / T
 
     def make(weight):
-        ball = LinearSystem(M=1.0, force=-weight)
-        table = LinearContacts(G=1.0, restitution=r, motion=ridge)
-        start = (10.0 * length, 0.0, (0.0, T))
-        return Scene(ball, *start, contacts=table, p=[T, c, a], corners=[0.0, c * T], period=T)
+        return over_a_ridge(weight, T, c, a, r)
 
     x = np.array([0.125 * g * T**2, 1e-3 * g * T])  # half way between two impacts, nearly
     found = corner_impact(make, 0.98 * g, x, corner=1, phase=c + 0.5)
