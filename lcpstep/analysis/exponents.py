@@ -27,7 +27,7 @@ MOST = 512  # impacts of a period that are kept
 def exponent(P: PeriodMap, sample: Periods, x: Array, n: int) -> Lyapunov:
     """Largest Lyapunov exponent per period: from the multipliers of a periodic motion, or along an aperiodic one."""
     if not sample.tangents.shape[1]:  # no closed form
-        if not isinstance(P.method, EventDriven):
+        if not isinstance(P.method, EventDriven) and getattr(P.scene, "n_c", 0):
             return Lyapunov(
                 math.nan, math.nan, reason="differences across the impacts of time-stepping say nothing"
             )
@@ -65,7 +65,10 @@ def _of_scattered(P: PeriodMap, starts: Array, n: int) -> Lyapunov:
         for i in range(len(starts)):
             log, counts = mean_impacts(run, i, n)
             J = np.eye(2)
-            for factor in P.from_impacts(log[None], counts[None])[0]:
+            known = np.any(counts)  # and else it flies, or rests
+            for factor in (
+                P.from_impacts(log[None], counts[None])[0] if known else P.along(run.final[i], n)[1]
+            ):
                 J = factor @ J
             parts.append(_of_multipliers(J, n).largest)
     if -math.inf in parts:

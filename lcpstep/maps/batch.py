@@ -181,7 +181,17 @@ def _from_logs(scene: Scene, task: Task) -> Array:
     if exact is None or not exact.usable:
         return task.tangents
     log = np.ascontiguousarray(task.impacts[..., :2])
-    return np.asarray(exact.tangents_of(log, task.counts, task.t_start))
+    result = np.asarray(exact.tangents_of(log, task.counts, task.t_start))
+    # Without an impact a motion flies or rests all the time; an event-driven run from its start tells
+    before = np.concatenate([np.full_like(task.states[:, :1], np.nan), task.states[:, :-1]], axis=1)
+    if task.drop == 0:
+        before[:, 0] = task.starts
+    quiet = np.all(task.counts == 0, axis=2) & np.all(np.isfinite(before), axis=2)
+    if np.any(quiet):
+        phase = task.t_start / scene.period
+        found = periods(scene, EventDriven(), before[quiet], 1, phase=phase, strict=False, tangents=True)
+        result[quiet] *= np.any(found.tangents, axis=(2, 3))[..., None]
+    return result
 
 
 def section(phase: float) -> float:

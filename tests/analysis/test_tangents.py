@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System
 from lagrangian.scenes import cam_follower, impact_oscillator
-from lcpstep import EventDriven
+from lcpstep import EventDriven, Located, Moreau
 from lcpstep.analysis.attractors import attractors
 from lcpstep.analysis.branch_data import branch_dataset
 from lcpstep.analysis.continuation import Steps, continue_point
@@ -143,3 +143,34 @@ def test_a_branch_that_is_interrupted_is_saved_as_far_as_it_came(capsys, tmp_pat
 def test_orbit_draws_itself(tmp_path):
     assert main(["orbit", "cam-follower", "--rpm", "700", "--draw", "--out", str(tmp_path)]) == 0
     assert (tmp_path / "orbit.png").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(h=5e-3), Moreau(h=5e-4)])
+def test_a_body_that_rests_all_the_time_forgets_everything_by_any_method(method):
+    # The table's acceleration never exceeds gravity; by free flight the exponent would be zero
+    body, table = LinearSystem(M=1.0, force=-9.81), LinearContacts(G=1.0, restitution=0.3, motion=swaying)
+    scene = Scene(body, 0.1, 0.0, (0.0, 1.0), contacts=table, period=1.0)
+    (found,) = attractors(scene, method, [[0.1, 0.0]], transient=40, window=20, longest=4, phase=0.2).found
+    assert found.name == "O(1, 0)"
+    assert found.lyapunov.largest == -math.inf
+    x = found.points[0]
+    assert np.array_equal(PeriodMap(scene, method, 0.2).along(x, 3)[1], np.zeros((3, 2, 2)))
+
+
+def swaying(t, q, v, p, out):
+    w = 2.0 * math.pi
+    s, c = 0.05 * math.sin(w * t), 0.05 * w * math.cos(w * t)
+    out[0, 0], out[0, 1], out[0, 2] = s, c, -(w**2) * s
+
+
+def softened(t, q, v, p, out):
+    out[0] = -0.2 * v[0] - q[0] - 0.5 * q[0] ** 3 + 0.4 * math.cos(1.3 * t)
+
+
+@pytest.mark.parametrize("method", [Located(h=0.02, order=4), Moreau(h=2e-3)])
+def test_a_smooth_motion_by_time_stepping_has_the_exponent_of_its_damping(method):
+    # The multipliers of the resonant motion are a conjugate pair: their product is exp(-c T)
+    scene = Scene(System(1, [[1.0]], softened), 0.0, 0.0, (0.0, 1.0), period=2.0 * math.pi / 1.3)
+    (found,) = attractors(scene, method, [[0.1, 0.0]], transient=60, window=20, longest=4).found
+    assert found.name == "O(1, 0)"
+    assert found.lyapunov.largest == pytest.approx(-0.1 * scene.period, rel=1e-4)
