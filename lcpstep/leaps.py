@@ -21,7 +21,7 @@ from lcpstep.trajectory import Status, Trajectory
 
 Array = NDArray[np.float64]
 FURTHER = 2.0  # times what the velocities at both ends lead
-ROUNDING = 1e-9  # of the coordinates: no way
+ROUNDING = 1e-9  # of the coordinates: no way; of how far the run could go: no leap
 STEPS = 4  # that are looked at, those that went furthest
 JUST_BEFORE = 4 * float(np.finfo(float).eps)  # of a time
 HALVINGS = 48  # of a step: down to the resolution of its place
@@ -42,7 +42,7 @@ def leapt(run: Trajectory) -> str:
             found = _leap(run.scene, *((float(run.t[i]), run.q[i], run.v[i]) for i in (k, k + 1)))
         except ValueError:  # a callback that fails beside the motion
             continue
-        if found is not None:
+        if found is not None and found[2] > ROUNDING * _way(run):
             c, t, size = found
             return (
                 f"the gap of contact {c} leaps by {size:.3g} m at t = {t:.9g} s and takes what touches it along "
@@ -50,6 +50,14 @@ def leapt(run: Trajectory) -> str:
                 f"gap that is continuous"
             )
     return ""
+
+
+def _way(run: Trajectory) -> float:
+    """How far the speeds of the run, or forces that nothing holds, would lead in its span [m]."""
+    from lcpstep.errorbar.distance import fall
+    from lcpstep.model import looked_at
+
+    return float(run.t[-1] - run.t[0]) * (float(np.max(np.abs(run.v))) + fall(looked_at(run.scene), run))
 
 
 def _carried(run: Trajectory) -> Any:

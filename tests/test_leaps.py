@@ -110,3 +110,23 @@ def test_a_fall_in_one_step_onto_putty_is_no_leap():
     assert np.abs(np.diff(run.q[:, 0])).max() == pytest.approx(1.0)
     assert np.all(run.v == 0.0)
     assert run.doubt == ""
+
+
+@pytest.mark.parametrize("method", METHODS, ids=IDS)
+def test_rounding_of_a_gap_is_no_leap(method):
+    """A body creeps to the lowest place of a bowl of 1 m, until a step goes less than its gap can tell."""
+
+    def gap(t, q, v, p, out):
+        out[0] = 1.0 - math.sqrt(q[0] ** 2 + (q[1] - 1.0) ** 2)
+
+    def jacobian(t, q, v, p, out):
+        d = math.sqrt(q[0] ** 2 + (q[1] - 1.0) ** 2)
+        out[0, 0], out[0, 1] = -q[0] / d, (1.0 - q[1]) / d
+
+    system = LinearSystem(np.eye(2), C=20.0 * np.eye(2), force=[0.0, -G])
+    scene = Scene(
+        system, [1e-7, 1.0 - math.sqrt(1.0 - 1e-14)], [0.0, 0.0], (0.0, 3.0), Contacts(1, gap, jacobian)
+    )
+    run = simulate(scene, method)
+    assert run.status == Status.DONE
+    assert not run.doubt
