@@ -186,6 +186,8 @@ def _print_table(steps: list[Moreau], found: list[Summary]) -> None:
 
 def _range(options: argparse.Namespace) -> tuple[float, float]:
     if options.window is not None:
+        if options.parameter not in (None, "rpm"):
+            raise ValueError(f"--window: it names speeds [rpm]; give --range, that of {options.parameter}")
         if options.window not in WINDOWS:
             raise UnknownName("window", options.window, WINDOWS)
         return WINDOWS[options.window]

@@ -136,6 +136,10 @@ def test_parts_of_another_run_are_not_mixed_with_this_one(capsys, tmp_path):
     ("arguments", "said"),
     [
         (["bifurcation", "cam-follower", "--window", "660-761"], "did you mean '660-760'"),
+        (
+            ["bifurcation", "cam-follower", "--window", "660-760", "--parameter", "q0"],
+            "give --range, that of q0",
+        ),
         (["bifurcation", "cam-follower", "--range", "700", "600"], "--range: expected LOW < HIGH"),
         (["bifurcation", "cam-follower", "--points", "0"], "--points: expected a positive number"),
         (
