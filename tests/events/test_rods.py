@@ -78,6 +78,16 @@ def test_impulses_that_can_be_shared_in_many_ways_stay_what_they_were():
     assert errors[1] < 0.5 * errors[0] < 1e-2
 
 
+def test_ends_that_share_a_direction_stick_with_the_friction_of_all():
+    """Three ends stick, two of them at one place; one has all the friction, at the edge of its cone.
+
+    Its force left the cone at once, its neighbour was asked, and asked back, 10^5 times at one time.
+    """
+    run, true = simulate(rods((18, 57)), Located(0.23 * 5e-4, 4), keep=[1.0]), simulate(rods((18, 57)), METHODS[0])
+    assert run.status == true.status == Status.DONE
+    np.testing.assert_allclose(run.q[-1], true.q[-1], rtol=0, atol=3e-6)
+
+
 def pulled(t, q, v, p, out):
     """Rods of 1 kg, the first of them pulled along the floor."""
     out[:] = 0.0

@@ -40,7 +40,7 @@ def braced(s: Rubbing) -> bool:
         if rests(s, c):
             resting += 1
             ways = ways * WAYS if resting <= MOST else 0
-    if resting < 2 or carries(s, STILL if ways > 0 else -STILL):
+    if resting < 2 or carries(s, STILL):
         return True
     independent = 0  # rows, of the first way, in which all stick
     for way in range(ways):
