@@ -83,7 +83,10 @@ def test_ends_that_share_a_direction_stick_with_the_friction_of_all():
 
     Its force left the cone at once, its neighbour was asked, and asked back, 10^5 times at one time.
     """
-    run, true = simulate(rods((18, 57)), Located(0.23 * 5e-4, 4), keep=[1.0]), simulate(rods((18, 57)), METHODS[0])
+    run, true = (
+        simulate(rods((18, 57)), Located(0.23 * 5e-4, 4), keep=[1.0]),
+        simulate(rods((18, 57)), METHODS[0]),
+    )
     assert run.status == true.status == Status.DONE
     np.testing.assert_allclose(run.q[-1], true.q[-1], rtol=0, atol=3e-6)
 

@@ -28,7 +28,7 @@ def uncompiled(monkeypatch):
             monkeypatch.setattr(module, "gaps_at", plain.states.gaps_at)
             monkeypatch.setattr(module, "gradients_at", plain.states.gradients_at)
         monkeypatch.setattr(states, "power", plain.states.power)
-        for name in ("at_most", "highest", "lies_inside", "turning"):
+        for name in ("at_most", "highest", "lies_inside"):
             monkeypatch.setattr(looks, name, getattr(plain.looks, name))
         monkeypatch.setattr(room, "lies_inside", plain.looks.lies_inside)
         monkeypatch.setattr(surplus, "surplus", plain.surplus.surplus)
