@@ -64,28 +64,12 @@ def check_derivatives(
                 compare(relation)
 
 
-def check_force_of_time(scene: Scene) -> None:
-    """ValueError where the force of a LinearSystem depends on its state: steps that solve for it do not ask there.
-
-    Once for a function and parameters.
-    """
-    force: Any = scene.system.force
-    if not (isinstance(scene.system, LinearSystem) and callable(force)):
-        return
-    with KNOWN.look([force], scene.n_q, np.asarray(scene.p)) as new, np.errstate(all="ignore"):
-        if new:
-            ask, at = Asked(scene, in_python), (scene.t_span[0], np.array(scene.q0), np.array(scene.v0))
-            other = (at[0], *_beside(ask, at, 0.0)[1:])
-            name = "system.force (that of a System may depend on q and v)"
-            _check_same(name, "time", ask.evaluated(force, (scene.n_q,)), at, other)
-
-
 def _functions(scene: Scene) -> list[Any]:
     """The functions between which there are relations."""
     found: list[Any] = []
     system = scene.system
     if isinstance(system, LinearSystem):
-        found += [system.frame]
+        found += [system.frame, system.force if callable(system.force) else None]
     else:
         found += [system.mass] if callable(system.mass) else []
         if system.force_q is not None or system.force_v is not None:
@@ -110,7 +94,8 @@ def _check_mass(ask: Asked, at: State) -> None:
 def _check_arguments(ask: Asked, at: State) -> None:
     """ValueError where what moves by itself depends on the state, or a gap, tangent or belt on velocities.
 
-    No method asks for that: a tangent that follows the sliding never sees it turn about, and holds nothing at rest.
+    No method asks for that: a tangent that follows the sliding never sees it turn about, and holds nothing at rest;
+    steps that solve for the force of a linear system ask for it once, and derivatives of a motion not at all.
     """
     (t, q, _), (_, beside, faster) = at, _beside(ask, at, 0.0)
     for name, f, shape in _moving(ask.scene):
@@ -135,9 +120,11 @@ def _check_same(name: str, allowed: str, f: Callable[[State], Array], at: State,
         )
 
 
-def _moving(scene: Scene) -> Iterator[tuple[str, Callback | None, tuple[int, int]]]:
-    """Frame and obstacles that move by themselves: functions of time, with the shape that they fill."""
+def _moving(scene: Scene) -> Iterator[tuple[str, Callback | None, tuple[int, ...]]]:
+    """What is a function of time: force of a linear system, frame, obstacles, with the shape that they fill."""
     if isinstance(scene.system, LinearSystem):
+        force = scene.system.force if callable(scene.system.force) else None
+        yield "system.force (that of a System may depend on q and v)", force, (scene.n_q,)
         yield "system.frame", scene.system.frame, (scene.n_q, 3)
     for name, c in _constraints(scene):
         if isinstance(c, LinearContacts):

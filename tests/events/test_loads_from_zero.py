@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchmarks.judge.describe import Description
-from lagrangian import Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, Scene
+from lagrangian import Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
 from lcpstep.trajectory import Kind
 
@@ -282,7 +282,7 @@ def lifted_soon(t, q, v, p, out):
 def test_a_body_that_nothing_presses_does_not_ask_when_another_leaves():
     # one at the end of a relaxed spring, the other lifted off a millisecond later, within the first look
     contacts = LinearContacts([[1.0, 0.0], [0.0, -1.0]], restitution=0.5)
-    system = LinearSystem(np.eye(2), force=lifted_soon)
+    system = System(2, np.eye(2), lifted_soon)
     m = simulate(Scene(system, [0.0, 0.0], [0.0, 0.0], (0.0, 0.1), contacts), EventDriven(max_events=1000))
     leaves = m.impacts[m.impacts.kind == Kind.RELEASE]
     np.testing.assert_array_equal(leaves.contact, [0])

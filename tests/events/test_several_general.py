@@ -41,14 +41,14 @@ def test_chatter_in_one_contact_does_not_disturb_the_other():
     stops = LinearContacts(
         G=[[1.0, 0.0], [0.0, -1.0]], offset=[0.0, 0.5], restitution=[0.3, 0.6], motion=table_and_stop
     )
-    system = LinearSystem(M=np.eye(2), force=weight_and_drive)
+    system = System(2, np.eye(2), weight_and_drive)
     both = simulate(Scene(system, [0.02, 0.0], [0.0, 0.0], (0.0, T), stops, period=period), EventDriven())
     one = LinearContacts(G=1.0, restitution=0.3, motion=table)
     ball = simulate(
         Scene(LinearSystem(M=1.0, force=-9.81), 0.02, 0.0, (0.0, T), one, period=period), EventDriven()
     )
     other = LinearContacts(G=-1.0, offset=0.5, restitution=0.6)
-    bob = simulate(Scene(LinearSystem(M=1.0, force=drive), 0.0, 0.0, (0.0, T), other), EventDriven())
+    bob = simulate(Scene(System(1, 1.0, drive), 0.0, 0.0, (0.0, T), other), EventDriven())
     t = np.linspace(0.0, T, 301)
     q = both.at(t)[0]
     np.testing.assert_allclose(q[:, :1], ball.at(t)[0], rtol=0, atol=1e-10)
@@ -159,7 +159,7 @@ def springs_by_scipy(scene, p):
     def rate(t, y):
         a = np.zeros(2)
         springs(t, y[:2], y[2:], p, a)
-        return np.concatenate([y[2:], np.linalg.solve(scene.system.M, a)])
+        return np.concatenate([y[2:], np.linalg.solve(scene.system.mass, a)])
 
     def wall(c):
         def gap(t, y):
@@ -174,7 +174,7 @@ def springs_by_scipy(scene, p):
         t, y = s.t[-1], s.y[:, -1].copy()
         if s.status == 1:
             c = 0 if len(s.t_events[0]) else 1
-            MG = np.linalg.solve(scene.system.M, G[c])
+            MG = np.linalg.solve(scene.system.mass, G[c])
             y[2:] -= (1.0 + scene.contacts.restitution[c]) * MG * (G[c] @ y[2:]) / (G[c] @ MG)
             hits.append((t, c))
     return y, hits
@@ -188,9 +188,7 @@ def test_coupled_springs_between_walls_move_as_scipy_says(seed):
     contacts = LinearContacts(
         G=rng.normal(size=(2, 2)), offset=rng.uniform(0.1, 0.3, 2), restitution=rng.uniform(0.6, 1.0, 2)
     )
-    scene = Scene(
-        LinearSystem(M=M, force=springs), [0.0, 0.0], 2.0 * rng.normal(size=2), (0.0, 8.0), contacts, p=p
-    )
+    scene = Scene(System(2, M, springs), [0.0, 0.0], 2.0 * rng.normal(size=2), (0.0, 8.0), contacts, p=p)
     m = simulate(scene, EventDriven())
     y, hits = springs_by_scipy(scene, p)
     assert len(hits) >= 7

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lagrangian.relations import check_force_of_time
 from lcpstep.errors import SimulationError
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.looks import all_finite
@@ -41,8 +40,6 @@ class LocatedRun(StepRun):
     """One run: the loop with its state."""
 
     def __init__(self, method: Located, scene: Scene, kept: Kept) -> None:
-        if method.order == 2:
-            check_force_of_time(scene)
         self.model = carried_where_possible(model(scene), method.order == 2)
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p)
