@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian.plain import python
+from lagrangian.plain import in_order, python
 
 Array = NDArray[np.float64]
 Callback = Callable[[float, Any, Any, Any, Any], Any]  # f(t, q, v, p, out), fills out, returns None
@@ -225,6 +225,7 @@ def evaluate(
     t, q, v, p = at
     letter, words = speeds
     call = f"f(t, q, {letter}, p, out)"
+    in_order(name, f, ("t", "q", letter, "p", "out"))
 
     def where() -> str:
         return f"at t = {t:.9g}, q = {shown(q)}, {words}{letter} = {shown(v)}"
@@ -240,7 +241,10 @@ def evaluate(
     if returned is not None:
         raise ValueError(f"{name}: expected {call} to fill `out`, but it returned {returned!r}")
     if not np.all(np.isfinite(out)):
-        raise ValueError(f"{name}: out (shape {shape}) is not finite or not filled {where()}: {shown(out)}")
+        hint = "; every entry is to be filled, zeros too" if np.any(np.isnan(out)) else ""
+        raise ValueError(
+            f"{name}: out (shape {shape}) is not finite or not filled {where()}: {shown(out)}{hint}"
+        )
     return out
 
 
@@ -255,6 +259,8 @@ def said(error: BaseException, letter: str = "v") -> str:
     """What an exception says, and what it is; what the third argument of the callback is called."""
     if "read-only" in str(error):
         return f"{error}; q, {letter} and p are not the callback's to change"
+    if isinstance(error, IndexError) and "only integers" in str(error):
+        return f"{error}; p holds numbers by their places, p[0], p[1], ..., in the order of `parameters`"
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
 
 

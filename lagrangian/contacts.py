@@ -51,7 +51,10 @@ class LinearContacts(Pickled):
         object.__setattr__(self, "G", read("G", self.G))
         empty = sparse.empty_rows(self.G) if self.sparse else np.flatnonzero(~np.any(self.G, axis=1))
         if len(empty):
-            raise ValueError(f"G: row {empty[0]} is zero: the gap depends on no coordinate")
+            raise ValueError(
+                f"G: row {empty[0]} is zero: the gap depends on no coordinate; G has shape {np.shape(self.G)}, "
+                "a row for each contact and a column for each coordinate"
+            )
         object.__setattr__(self, "offset", checks.per_contact("offset", self.offset, self.n_c))
         object.__setattr__(self, "restitution", checks.restitution(self.restitution, self.n_c))
         if self.friction is not None:

@@ -39,6 +39,7 @@ from lagrangian.mechanical import check_contacts, check_rates, mass_of
 from lagrangian.modes import Function, Guard, Mode, Surface
 from lagrangian.parameters import values
 from lagrangian.pickling import Pickled
+from lagrangian.plain import in_order
 
 ModeOf = Callable[[float, Any, Any], str]  # mode(t, x, p), its name
 
@@ -232,6 +233,7 @@ class HybridScene(Pickled):
 def evaluate(name: str, f: Function, at: tuple[float, Array, Array], n: int) -> Array:
     """Value of a user's function in plain Python, (n,); an error if it does not fill `out`."""
     t, x, p = at
+    in_order(name, f, ("t", "x", "p", "out"))
 
     def with_velocities(t: float, q: Array, v: Array, p: Array, out: Array) -> Any:
         return f(t, q, p, out)

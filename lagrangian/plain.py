@@ -39,6 +39,14 @@ def source(f: Any) -> Any:
     return inside if isinstance(inside, FunctionType) else f
 
 
+def in_order(name: str, f: Any, names: tuple[str, ...]) -> None:
+    """ValueError for a function that takes arguments of these names in another order: it would get others."""
+    code = getattr(source(f), "__code__", None)
+    taken = code.co_varnames[: code.co_argcount] if code is not None else ()
+    if taken != names and sorted(taken) == sorted(names):
+        raise ValueError(f"{name}: expected f({', '.join(names)}), got f({', '.join(taken)})")
+
+
 def python(f: Any) -> Callable[..., Any]:
     """A callback that runs in Python alone."""
     f, in_python = source(f), InPython()

@@ -37,8 +37,8 @@ class Scene(Pickled):
     t_span : (t_start, t_end) [s]
     contacts : LinearContacts, Contacts, or None for a system that meets nothing
     joints : LinearJoints, Joints, or None   bilateral constraints, which the initial state must satisfy
-    p : (n_p,)   parameters handed to every callback; the values of `parameters` where not given, or None, as beside
-        new ones in `dataclasses.replace(scene, parameters=..., p=None)`
+    p : (n_p,)   parameters handed to every callback; the numbers of `parameters`, in their order, where not given, or
+        None, as beside new ones in `dataclasses.replace(scene, parameters=..., p=None)`
     parameters : names and values of the scene's parameters, for reports; read-only
     corners : (m,)   times in [0, period) at which a callback or one of its derivatives jumps [s]
     period : period of the forcing [s], a whole number of turns of a `Harmonic` force; math.inf where nothing repeats
@@ -53,9 +53,9 @@ class Scene(Pickled):
     Raises
     ------
     TypeError   system, contacts or joints are none
-    ValueError   a shape does not fit, a callback fails, a derivative does not belong to its function, the period is
-        not that of the force, or the initial state lies inside an obstacle or off a joint; the message names the
-        argument
+    ValueError   a shape does not fit, a callback fails or depends on what it may not, a derivative does not belong to
+        its function, the period is not that of the force, or the initial state lies inside an obstacle or off a
+        joint; the message names the argument
     """
 
     system: LinearSystem | System

@@ -99,9 +99,11 @@ class LinearSystem(Pickled):
             self._keep_sparse()
         else:
             M = checks.matrix("M", self.M)
-            square = (len(M), len(M))
-            zero = np.zeros(square)
-            object.__setattr__(self, "M", checks.mass_matrix("M", checks.array("M", M, square)))
+            if M.shape[0] != M.shape[1]:
+                raise ValueError(f"M: expected a square matrix, got shape {np.shape(self.M)}")
+            zero = np.zeros_like(M)
+            square = M.shape
+            object.__setattr__(self, "M", checks.mass_matrix("M", M))
             object.__setattr__(self, "C", checks.array("C", zero if self.C is None else self.C, square))
             K = checks.array("K", zero if self.K is None else self.K, square)
             object.__setattr__(self, "K", checks.symmetric("K", K))

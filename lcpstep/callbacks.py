@@ -36,6 +36,7 @@ MADE: dict[Any, Any] = {}  # C functions by what they were made from
 STARRED = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
 PLACE = re.compile(r'File "(.+)", line (\d+)|(?:at|from) (\S+) \((\d+)\)')  # as numba names it
 COLOURS = re.compile(r"\x1b\[[0-9;]*m")
+ENCLOSED = re.compile(r"= freevar\((\w+):")
 HEADINGS = ("Failed in nopython mode", "- Resolution failure for")  # of numba's pages, above what went wrong
 AGAIN = re.compile(r"(?:,? defined at|\. Raised from) \S+ \(\d+\)$")  # the place, which is told anyway
 
@@ -188,7 +189,8 @@ def _machine_code(f: FunctionType, takes: int, ndim: int) -> Any:
         try:
             return _compiled(f, signature(takes - 2, ndim), nrt=True)
         except Exception as error:
-            raise _explained(error, f.__code__) from error
+            entered = f.__code__ in (_enter.__code__, _enter_first_order.__code__)
+            raise _explained(error, (f.__globals__["user"] if entered else f).__code__) from error
 
 
 def _names(f: FunctionType) -> set[str]:
@@ -256,6 +258,9 @@ def _explained(error: Exception, code: CodeType) -> NotCompiled:
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     said = [line for line in lines if not line.startswith(HEADINGS)] or lines
     reason = AGAIN.sub("", said[0])
+    enclosed = ENCLOSED.search(text)
+    if enclosed and "object at 0x" in reason:  # numba names a part of its own
+        reason = f"it reads {enclosed[1]!r} from the function around it, which is no number, array or tuple"
     shown_call = next((line[3:].strip() for line in said if line.startswith(">>>")), "")
     if reason.endswith("signature:") and shown_call:
         reason = f"no compiled form of {shown_call}"

@@ -111,7 +111,25 @@ COMPILED = {
     "lambda": lambda t, q, v, p, out: out.fill(-8.0),
     "partial of njit": functools.partial(numba.njit(with_g_first), 8.0),
 }  # fmt: skip
+
+
+def beside(numbers):
+    def force(t, q, v, p, out):
+        out[0] = numbers[0]
+
+    return force
+
+
+def beside_with_default(numbers):
+    def force(t, q, v, p, out, scale=1.0):
+        out[0] = scale * numbers[0]
+
+    return force
+
+
 PLAIN = {
+    "list around it": (beside([-8.0]), "it reads 'numbers' from the function around it"),
+    "list around it, and a default": (beside_with_default([-8.0]), "it reads 'numbers' from the function around it"),
     "dictionary": (reads_a_dictionary, "'CONSTANTS'"), "import": (imports, "IMPORT_NAME"),
     "method": (Field().method, "is a method"), "object": (Field(), "an object of class Field"),
     "recursion": (recurses, "factorial calls itself"),

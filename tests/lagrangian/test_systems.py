@@ -147,3 +147,9 @@ def test_a_general_system_needs_a_function_for_its_force():
         System(n_q=1, mass=1.0, force=-9.81)
     with pytest.raises(ValueError, match=r"^mass: "):
         System(n_q=2, mass=np.eye(3), force=fall)
+
+
+@pytest.mark.parametrize("M", [[1.0, 2.0], [[1.0, 2.0, 3.0], [2.0, 1.0, 0.0]]])
+def test_a_matrix_that_is_not_square_is_said_to_be_none(M):
+    with pytest.raises(ValueError, match=r"^M: expected a square matrix, got shape \(2,"):
+        LinearSystem(M=M)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lagrangian import Contacts, LinearContacts, LinearSystem, System
+from lagrangian import Contacts, HybridScene, HybridSystem, LinearContacts, LinearSystem, Mode, Scene, System
 from tests.lagrangian.ball import height, scene, upward
 
 
@@ -108,3 +108,46 @@ def test_a_callback_that_writes_into_what_it_is_shown_is_refused(k):
 
     with pytest.raises(ValueError, match=r"^system\.force: .*read-only; q, v and p are not the callback's"):
         scene(system=LinearSystem(M=1.0, force=careless), p=[1.0])
+
+
+def swapped(t, v, q, p, out):
+    out.fill(-9.81 - 5.0 * q[0])
+
+
+def field(x, t, p, out):
+    out[0] = 1.0
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_arguments_of_the_right_names_in_another_order_are_refused(place):
+    """Coordinates and velocities have one shape: each was taken for the other, in silence."""
+    with pytest.raises(
+        ValueError, match=rf"^{place}: expected f\(t, q, v, p, out\), got f\(t, v, q, p, out\)$"
+    ):
+        scene(**PLACES[place](swapped))
+
+
+def test_those_of_a_mode_too():
+    system = HybridSystem(n_x=1, modes={"on": Mode(field)})
+    with pytest.raises(
+        ValueError, match=r"^field of mode 'on': expected f\(t, x, p, out\), got f\(x, t, p, out\)$"
+    ):
+        HybridScene(system, [0.0], "on", (0.0, 1.0))
+
+
+def of_two(t, q, v, p, out):
+    out[0, 0] = out[1, 1] = 1.0
+
+
+def test_zeros_that_are_not_filled_are_asked_for():
+    with pytest.raises(ValueError, match=r"^system\.mass: .*nan.*; every entry is to be filled, zeros too$"):
+        Scene(System(n_q=2, mass=of_two, force=one), [0.0, 0.0], [0.0, 0.0], (0.0, 1.0))
+
+
+def by_name(t, q, v, p, out):
+    out[0] = -p["g"]
+
+
+def test_parameters_asked_for_by_name_are_told_to_have_places():
+    with pytest.raises(ValueError, match=r"^system\.force: .*; p holds numbers by their places"):
+        Scene(System(n_q=1, mass=1.0, force=by_name), [0.0], [0.0], (0.0, 1.0), parameters={"g": 9.81})
