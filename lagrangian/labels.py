@@ -13,3 +13,9 @@ def common_unit(labels: tuple[str, ...]) -> str:
     """The unit of named coordinates, "m" of "position [m]", where they have one in common; "" where not."""
     units = {label.partition("[")[2].rstrip("]") for label in labels}
     return units.pop() if len(units) == 1 else ""
+
+
+def units(labels: tuple[str, ...]) -> tuple[str, str]:
+    """Units of the coordinates and of the velocities among a scene's labels; "own units" where they share none."""
+    n = len(labels) // 2
+    return common_unit(labels[:n]) or "own units", common_unit(labels[n:]) or "own units"

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
-from lagrangian.labels import common_unit
+from lagrangian.labels import units
 from lcpstep.accuracy import dials
 from lcpstep.accuracy.dials import changeable, dial, with_value
 from lcpstep.accuracy.question import curves_of
@@ -111,7 +111,7 @@ class Contest:
     @property
     def unit(self) -> str:
         """Unit of the coordinates, where they have one in common."""
-        return common_unit(self.scene.labels[: self.scene.n_q]) or "own units"
+        return units(self.scene.labels)[0]
 
     @property
     def runs(self) -> list[Entrant]:

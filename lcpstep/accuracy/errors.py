@@ -21,8 +21,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lagrangian import Scene, checks
-from lagrangian.labels import common_unit
+from lagrangian import Scene, checks, labels
 from lcpstep.accuracy.graphs import Graph, hausdorff
 from lcpstep.accuracy.matching import Matching, match_impacts
 from lcpstep.gauss import gauss
@@ -273,8 +272,7 @@ MEASURES = (
 
 def units(scene: Scene) -> dict[str, str]:
     """Unit of each measure on a scene, where its coordinates have one in common; "1" for numbers."""
-    n = scene.n_q
-    q, v = (common_unit(labels) or "own units" for labels in (scene.labels[:n], scene.labels[n:]))
+    q, v = labels.units(scene.labels)
     return {
         "sup_position": q, "l1_velocity": q, "graph_distance": v, "impact_time": "s", "impact_impulse": "N s",
         "unmatched": "1", "energy": "J", "penetration": "m",

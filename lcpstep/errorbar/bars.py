@@ -53,9 +53,9 @@ class ErrorBar:
     Attributes
     ----------
     t : (m,)   times of the functions of time [s]
-    position : Bar [m], the unit of the coordinates
-    velocity : Bar [m/s]; `sup` leaves out the time between an impact and its partner in the companion, where one of
-        the two velocities has jumped already, `left_out`; `l1` [m] does not
+    position : Bar, in the unit of the scene's coordinates
+    velocity : Bar, likewise; `sup` leaves out the time between an impact and its partner in the companion, where one
+        of the two velocities has jumped already, `left_out`; `l1` does not
     energy : Bar [J], of the kinetic energy and that of constant stiffness and forces; `sup` as for velocities
     impact_time, impact_impulse : (n_events,)   of every row of the impact log [s], [N s]; nan for what is no impact,
         has no partner, is weak (its jump below a fiftieth of the largest), follows another of its contact faster than

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from lagrangian.labels import units
 from lcpstep.errorbar.bars import Bar, ErrorBar
 from lcpstep.errorbar.breaks import increasing, with_nodes
 from lcpstep.errorbar.companions import Companion, best, companions, followed, in_closed_form, in_words
@@ -115,9 +116,10 @@ def unknown(run: Trajectory, reason: str) -> ErrorBar:
     """The bar of a run that has none."""
     start = run.t[:1] if len(run.t) else np.array(run.scene.t_span[:1])
     missing = np.full(len(run.impacts), math.nan)
+    n_q, (q, v) = run.scene.n_q, units(run.scene.labels)
     position, velocity, energy = (
         Bar(np.full((1, k), math.inf), np.full((1, k), math.inf), unit)
-        for k, unit in ((run.scene.n_q, "m"), (run.scene.n_q, "m/s"), (1, "J"))
+        for k, unit in ((n_q, q), (n_q, v), (1, "J"))
     )
     at = float(start[0])
     nothing = np.zeros((0, 2))

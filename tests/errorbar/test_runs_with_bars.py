@@ -131,6 +131,16 @@ def test_the_command_prints_it(capsys, tmp_path):
     assert picture.stat().st_size > 0
 
 
+def test_a_bar_has_the_units_of_the_coordinates():
+    run = simulate(scenes.pendulum_stop(t_end=0.5), Located(1e-2), error=True)
+    assert (run.error.position.unit, run.error.velocity.unit, run.error.energy.unit) == ("rad", "rad/s", "J")
+    assert str(run.error).startswith(f"position {run.error.position.sup:.2g} rad, ")
+    assert (estimate.unknown(run, "").position.unit, estimate.unknown(run, "").velocity.unit) == (
+        "rad",
+        "rad/s",
+    )
+
+
 def test_a_comparison_prints_the_bars_of_all_runs(capsys):
     assert (
         main(["compare", "impact-oscillator", "--t-end", "5", "--h", "1e-2", "--no-pictures", "--error"]) == 0
