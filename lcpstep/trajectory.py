@@ -17,37 +17,65 @@ Array = NDArray[np.float64]
 
 
 class Status(IntEnum):
-    """How a run ended. Kernels return the number, people read the name."""
+    """How a run ended. Kernels return the number, people read the name.
+
+    Attributes
+    ----------
+    DONE : the end of the span is reached
+    INTERRUPTED : by Ctrl-C
+    NOT_FINITE : a callback, or the motion, left the finite numbers
+    LCP_FAILED : the complementarity solver said no
+    NEWTON_FAILED : the implicit step did not converge
+    TOO_MANY_EVENTS : events faster than the bound allows
+    STEP_TOO_SMALL : the tolerance cannot be met, or only by steps without end
+    JOINTS_FAILED : joints contradict each other
+    PROJECTION_FAILED : no position near satisfies all joints and contacts
+    ENDLESS_SWITCHING : modes follow one another for ever at one instant
+    NOT_TRANSVERSAL : a guard is touched, and tolerances decide whether it acts
+    PAINLEVE_INCONSISTENT : with friction no contact forces keep a sliding contact from passing the surface
+    PAINLEVE_INDETERMINATE : with friction a sliding contact may as well stay closed as open
+    """
 
     DONE = 0
     INTERRUPTED = 1
-    NOT_FINITE = 2  # a callback, or the motion, left the finite numbers
-    LCP_FAILED = 3  # the complementarity solver said no
-    NEWTON_FAILED = 4  # the implicit step did not converge
-    TOO_MANY_EVENTS = 5  # events faster than the bound allows
-    STEP_TOO_SMALL = 6  # the tolerance cannot be met, or only by steps without end
-    JOINTS_FAILED = 7  # joints contradict each other
-    PROJECTION_FAILED = 8  # no position near satisfies all joints and contacts
-    ENDLESS_SWITCHING = 9  # modes follow one another for ever at one instant
-    NOT_TRANSVERSAL = 10  # a guard is touched, and tolerances decide whether it acts
-    PAINLEVE_INCONSISTENT = (
-        11  # with friction no contact forces keep a sliding contact from passing the surface
-    )
-    PAINLEVE_INDETERMINATE = 12  # with friction a sliding contact may as well stay closed as open
+    NOT_FINITE = 2
+    LCP_FAILED = 3
+    NEWTON_FAILED = 4
+    TOO_MANY_EVENTS = 5
+    STEP_TOO_SMALL = 6
+    JOINTS_FAILED = 7
+    PROJECTION_FAILED = 8
+    ENDLESS_SWITCHING = 9
+    NOT_TRANSVERSAL = 10
+    PAINLEVE_INCONSISTENT = 11
+    PAINLEVE_INDETERMINATE = 12
 
 
 class Kind(IntEnum):
-    """What happened at a contact."""
+    """What happened at a contact.
 
-    IMPACT = 0  # velocity jump; of `Moreau` the first step in which a contact bears
-    ACCUMULATION = 1  # infinitely many impacts end here (complete chattering)
-    STICK = 2  # the contact stays closed from here on; of `Moreau` the second step in a row in which it bears
-    RELEASE = 3  # a closed contact opens
-    # The next three, not told by `Moreau`, have sliding velocities in `before` and `after`
-    SLIP = 4  # a contact that stuck slides
-    STICK_TANGENT = 5  # a contact that slid sticks
-    REVERSE = 6  # a contact slides the other way
-    JAM = 7  # sliding without a force that would hold the contact: an impact without collision
+    `Moreau` tells no SLIP, STICK_TANGENT and REVERSE; they have sliding velocities in `before` and `after`.
+
+    Attributes
+    ----------
+    IMPACT : velocity jump; of `Moreau` the first step in which a contact bears
+    ACCUMULATION : infinitely many impacts end here (complete chattering)
+    STICK : the contact stays closed from here on; of `Moreau` the second step in a row in which it bears
+    RELEASE : a closed contact opens
+    SLIP : a contact that stuck slides
+    STICK_TANGENT : a contact that slid sticks
+    REVERSE : a contact slides the other way
+    JAM : sliding without a force that would hold the contact: an impact without collision
+    """
+
+    IMPACT = 0
+    ACCUMULATION = 1
+    STICK = 2
+    RELEASE = 3
+    SLIP = 4
+    STICK_TANGENT = 5
+    REVERSE = 6
+    JAM = 7
 
 
 # time [s], contact, gap velocity before and after [m/s], impulse [N s], kind (a `Kind`)
@@ -65,7 +93,15 @@ IMPACT_DTYPE = np.dtype(
 
 @dataclass(frozen=True)
 class Counts:
-    """Work done by a run."""
+    """Work done by a run.
+
+    Attributes
+    ----------
+    steps : of the method, or of its integrator
+    lcp_calls : complementarity problems solved, by methods that step
+    force_evaluations : evaluations of all forces together
+    events : lines of the log
+    """
 
     steps: int = 0
     lcp_calls: int = 0

@@ -59,6 +59,13 @@ def test_compare_prints_a_table_and_how_to_read_it_for_any_scene(capsys):
     assert "Try next: lcpstep simulate impact-oscillator" in further
 
 
+def test_what_a_comparison_says_to_try_next_names_files_as_it_is_shown_elsewhere(capsys, tmp_path):
+    file = tmp_path / "swing.py"
+    assert run(capsys, "new", str(file)[:-3])[0] == DONE
+    _, out, _ = run(capsys, "compare", file, "--t-end", 0.1, "--h", 1e-2, "--no-pictures")
+    assert f"Try next: lcpstep simulate {file} --method located --film swing.gif " in out
+
+
 @pytest.mark.parametrize(
     ("scene", "reference"),
     [("coulomb-oscillator", "closed form"), ("kane-pendulum", "event-driven at a tolerance")],

@@ -1,9 +1,11 @@
 """The documentation as pages: links lead somewhere, every public name is in the reference, the site builds."""
 
 import importlib
+import inspect
 import re
 import subprocess
 import sys
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,7 @@ import pytest
 import lagrangian
 import lcpstep
 from lagrangian import scenes
+from lcpstep.trajectory import Counts
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [
@@ -79,6 +82,30 @@ def test_what_the_reference_names_exists_and_is_described(name):
     module, _, own = name.rpartition(".")
     found = getattr(importlib.import_module(module), own)
     assert found.__doc__ or isinstance(found, dict)
+
+
+def classes_in_the_reference():
+    """Names of the classes, and the options that their members are listed by."""
+    text = "".join(file.read_text() for file in (ROOT / "docs" / "api").glob("*.md"))
+    return re.findall(r"\.\. autoclass:: ([\w.]+)\n((?:   :.*\n)*)", text)
+
+
+@pytest.mark.parametrize(("name", "options"), classes_in_the_reference())
+def test_the_reference_lists_what_classes_inherit(name, options):
+    module, _, own = name.rpartition(".")
+    of = getattr(importlib.import_module(module), own)
+    bases = [x for x in of.__mro__[1:] if x.__module__.startswith(("lcpstep", "lagrangian"))]
+    inherited = {
+        key for x in bases for key, own in vars(x).items()
+        if not key.startswith("_") and key not in vars(of) and (callable(own) or isinstance(own, property))
+    }  # fmt: skip
+    assert not inherited or ":inherited-members:" in options, sorted(inherited)
+
+
+@pytest.mark.parametrize("of", [lcpstep.Status, lcpstep.Kind, Counts])
+def test_each_outcome_is_described_where_help_shows_it(of):
+    names = [x.name for x in (fields(of) if is_dataclass(of) else of)]
+    assert re.findall(r"^(\w+) : \S", inspect.getdoc(of), re.MULTILINE) == names
 
 
 WRITTEN = ("index", "first-five-minutes", "guide", "gallery/index", "api/simulating", "accuracy")

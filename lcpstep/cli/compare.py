@@ -207,7 +207,7 @@ def _next(options: argparse.Namespace, pictures: list[Path]) -> list[str]:
     lines = [f"wrote {picture}" for picture in pictures]
     name = options.scene
     lines.append(
-        f"Try next: lcpstep simulate {name} --method located --film {name}.gif    the motion as a film"
+        f"Try next: lcpstep simulate {name} --method located --film {Path(name).stem}.gif    the motion as a film"
     )
     lines.append(f"          lcpstep study {name}    errors and orders, averaged over nearby steps")
     if name == "cam-follower":
