@@ -91,7 +91,7 @@ REFUSALS: dict[str, Refusal] = {
         "where their Jacobian has entries is not known, and it would be a dense matrix", "Joints(pattern=...)",
     ),
     "modes-method": Refusal(
-        "method", "Moreau, Located", "systems with modes",
+        "method", "time-stepping (Moreau, Located)", "systems with modes",
         "a switch has to be located where its guard is zero, and a step that goes past it follows the wrong field",
         "EventDriven",
     ),

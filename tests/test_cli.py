@@ -1,7 +1,10 @@
 """The command line as a user meets it: outputs, files, exit statuses, errors that name the argument."""
 
 import json
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +60,25 @@ def test_compare_prints_a_table_and_how_to_read_it_for_any_scene(capsys):
     ]
     assert len(sentences.splitlines()) == 3
     assert "Try next: lcpstep simulate impact-oscillator" in further
+
+
+def test_a_command_names_its_own_options_where_one_is_unknown(capsys):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["simulate", "cam-follower", "--rpm", "500"])
+    assert ended.value.code == USAGE
+    said = capsys.readouterr().err
+    assert said.startswith("usage: lcpstep simulate ")
+    assert said.endswith("lcpstep simulate: error: unrecognized arguments: --rpm 500\n")
+
+
+@pytest.mark.slow
+def test_a_reader_that_has_seen_enough_is_no_error():
+    reading, writing = os.pipe()
+    os.close(reading)
+    words = [sys.executable, "-c", "from lcpstep.cli import command; command()", "scenes"]
+    done = subprocess.run(words, stdout=writing, stderr=subprocess.PIPE, check=False)
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (FAILED, b"")
 
 
 def test_what_a_comparison_says_to_try_next_names_files_as_it_is_shown_elsewhere(capsys, tmp_path):

@@ -60,6 +60,11 @@ class Lyapunov:
         """Whether it is positive by more than three standard errors, and no growth of neutral motions."""
         return self.largest > max(self.least, self.neutral)
 
+    @property
+    def nearing(self) -> bool:
+        """Whether it is negative by more than three standard errors: motions near each other come nearer."""
+        return self.largest < -self.least
+
 
 def growth_of_runs(derivatives: Array, drop: int = 20) -> Lyapunov:
     """Largest exponent from the derivatives along m runs on one attractor, (m, n, d, d); the first `drop` align."""

@@ -21,7 +21,7 @@ from lcpstep.errors import UnknownName
 from lcpstep.maps.formulas import MAPS, Family, named, piecewise_linear
 
 OWN = "piecewise-linear"
-SETTLING = "not settled yet, or of a long period: take a larger --drop"
+UNSETTLED = "unsettled, nearing a periodic orbit: {} iterations dropped are too few (--drop)"
 MATRICES = ("A-minus", "A-plus", "B-minus", "B-plus", "C")
 LONGEST = 64  # period that is recognised
 MARGIN = 1.0  # of the box in which periodic points are looked for, in sizes of the orbit
@@ -145,10 +145,11 @@ def _described(options: argparse.Namespace, family: Family) -> dict[str, Any]:
         size = max(float(np.max(np.abs(orbit))), 1e-300)
         n = settled_time(orbit, min(LONGEST, len(orbit) // 2), TOLERANCE * size)
         found = exponent(P, orbit[0], options.keep, n)
-        restless = "aperiodic" if found.largest >= -found.least else SETTLING
-        restless = "chaotic" if found.chaotic else restless
+        repeats = f"period {n}" if n else ""
+        near = UNSETTLED.format(options.drop) if found.nearing else "aperiodic"
+        other = "chaotic" if found.chaotic else near
         result |= {
-            "orbit": f"period {n}" if n else restless,
+            "orbit": repeats or other,
             "points": (orbit[: n or 1] + 0.0).tolist(),
             "lyapunov": found.largest if math.isfinite(found.largest) else str(found.largest),
             "lyapunov_error": found.error if math.isfinite(found.error) else str(found.error),

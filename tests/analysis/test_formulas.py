@@ -231,3 +231,13 @@ def test_where_two_cycles_are_born_one_is_found_not_many_beside_it():
     found = periodic_points(LOGISTIC.at(r=1.0 + math.sqrt(8.0)), [[0.0], [1.0]], 3)
     assert len(found) == 1
     assert found[0].multipliers[0] == pytest.approx(1.0, abs=1e-5)  # half of the digits: it is a double root
+
+
+def test_an_orbit_that_nears_a_periodic_one_slowly_is_not_called_aperiodic(capsys):
+    """At r = 3.01 deviations from the period two shrink by 4 + 2 r - r^2 = 0.96 in two iterations."""
+    _, out, _ = run_map(capsys, "logistic", "--set", "r=3.01", "--drop", 100)
+    assert out.splitlines()[0].endswith(
+        "unsettled, nearing a periodic orbit: 100 iterations dropped are too few (--drop)"
+    )
+    _, out, _ = run_map(capsys, "logistic", "--set", "r=3.01", "--drop", 3000)
+    assert out.splitlines()[0].endswith(": period 2")
