@@ -79,6 +79,14 @@ class Energy:
         given = self.work + self.obstacles - self.damping - self.impacts - self.friction
         return self.total - self.total[0] - given
 
+    def __repr__(self) -> str:
+        ends = (
+            f"{self.total[0]:.6g} J -> {self.total[-1]:.6g} J, residual {self.residual[-1]:.2g} J, "
+            if len(self.t)
+            else ""
+        )
+        return f"Energy({ends}{len(self.t)} states)"
+
 
 def energy(trajectory: Trajectory) -> Energy:
     """Energy balance of a motion.

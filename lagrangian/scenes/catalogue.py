@@ -29,6 +29,9 @@ def checked(make: Callable[P, S]) -> Callable[P, S]:
 
     def made(*arguments: P.args, **named: P.kwargs) -> S:
         signature = _signature(make)
+        unknown = [name for name in named if name not in signature.parameters]
+        if unknown:
+            raise TypeError(f"{make.__name__}() has {', '.join(signature.parameters)}, and no {unknown[0]!r}")
         for name, value in signature.bind(*arguments, **named).arguments.items():
             default = signature.parameters[name].default
             if name == "restitution":

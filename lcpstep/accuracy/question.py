@@ -76,7 +76,7 @@ def levels_of(
                 notes.append(f"{argument}: {error}; left out for {name}")
         result[name] = [levels[v] for v in sorted(levels, reverse=True)]
     if not any(result.values()):
-        raise ValueError("; ".join(notes))
+        raise ValueError("; ".join(notes) + ", and nothing is left")
     return result
 
 

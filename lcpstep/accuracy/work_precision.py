@@ -209,6 +209,9 @@ class Study:
                 found[m] = f"{m} {min(ratios):.2g} to {max(ratios):.2g}"
         return ", ".join(found.values())
 
+    def __repr__(self) -> str:
+        return f"Study({self.question['scene']}, {len(self.levels)} levels of {', '.join(self.methods)})"
+
     def __str__(self) -> str:
         shown = [m for m in self.measures if any(m in x.errors for x in self.levels)]
         head = ["method", "at", "CPU [s]", "steps", "LCPs", "forces", *map(self.titled, shown)]

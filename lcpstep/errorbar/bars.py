@@ -42,6 +42,9 @@ class Bar:
     def __str__(self) -> str:
         return f"{self.sup:.2g} {self.unit}"
 
+    def __repr__(self) -> str:
+        return f"Bar({self})"
+
 
 @dataclass(frozen=True, eq=False)
 class ErrorBar:
@@ -106,6 +109,9 @@ class ErrorBar:
             parts.append(f"impacts {self.latest:.2g} s and {self.strongest:.2g} N s")
         end = f"; known up to t = {self.until:.6g} s: {self.reason}" if self.reason else ""
         return f"{', '.join(parts)} (by {'; '.join(self.companions) or 'no companion'}){end}"
+
+    def __repr__(self) -> str:
+        return f"ErrorBar({self})"
 
 
 def _largest(x: Array) -> float:

@@ -18,7 +18,7 @@ def line(row: Row) -> str:
     note = _remark(row)
     note = note if len(note) <= SHOWN else note[: SHOWN - 3] + "..."
     return (
-        f"{row.outcome:8}{row.scene:20}{row.what:58}{row.method:14}{_number(row.error):>9}{_number(row.bound):>9}"
+        f"{row.outcome:8}{row.scene:19} {row.what:69} {row.method:13}{_number(row.error):>9}{_number(row.bound):>9}"
         f"  {_bar(row):18}{row.seconds:9.3f} s  {note}"
     ).rstrip()
 
