@@ -241,10 +241,9 @@ def evaluate(
     if returned is not None:
         raise ValueError(f"{name}: expected {call} to fill `out`, but it returned {returned!r}")
     if not np.all(np.isfinite(out)):
-        hint = "; every entry is to be filled, zeros too" if np.any(np.isnan(out)) else ""
-        raise ValueError(
-            f"{name}: out (shape {shape}) is not finite or not filled {where()}: {shown(out)}{hint}"
-        )
+        found = f"{where()}: {shown(out)}"
+        hint = "; every entry is to be set, as out[0] = ..., zeros too" if np.any(np.isnan(out)) else ""
+        raise ValueError(f"{name}: out (shape {shape}) is not finite or not filled {found}{hint}")
     return out
 
 

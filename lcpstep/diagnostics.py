@@ -80,11 +80,8 @@ class Energy:
         return self.total - self.total[0] - given
 
     def __repr__(self) -> str:
-        ends = (
-            f"{self.total[0]:.6g} J -> {self.total[-1]:.6g} J, residual {self.residual[-1]:.2g} J, "
-            if len(self.t)
-            else ""
-        )
+        e = self.total
+        ends = f"{e[0]:.6g} J -> {e[-1]:.6g} J, residual {self.residual[-1]:.2g} J, " if len(e) else ""
         return f"Energy({ends}{len(self.t)} states)"
 
 

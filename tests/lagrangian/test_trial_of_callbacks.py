@@ -140,7 +140,10 @@ def of_two(t, q, v, p, out):
 
 
 def test_zeros_that_are_not_filled_are_asked_for():
-    with pytest.raises(ValueError, match=r"^system\.mass: .*nan.*; every entry is to be filled, zeros too$"):
+    with pytest.raises(
+        ValueError,
+        match=r"^system\.mass: .*nan.*; every entry is to be set, as out\[0\] = \.\.\., zeros too$",
+    ):
         Scene(System(n_q=2, mass=of_two, force=one), [0.0, 0.0], [0.0, 0.0], (0.0, 1.0))
 
 
