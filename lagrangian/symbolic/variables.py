@@ -57,7 +57,7 @@ class Variables:
         if unknown:
             raise ValueError(
                 f"{name}: unknown {', '.join(sorted(map(str, unknown)))}; expected an expression in the "
-                f"coordinates, their first derivatives, the time and the parameters"
+                f"coordinates, their first derivatives, the time and the parameters, each with a value"
             )
         plain = {x: self.named[x.name] for x in symbols}
         self.outward.update({y: x for x, y in plain.items()})
