@@ -92,7 +92,7 @@ def _check_mass(ask: Asked, at: State) -> None:
 
 
 def _check_arguments(ask: Asked, at: State) -> None:
-    """ValueError where what moves by itself depends on the state, or a gap, tangent or belt on velocities.
+    """ValueError where what moves by itself depends on the state, or a mass, gap, tangent or belt on velocities.
 
     No method asks for that: a tangent that follows the sliding never sees it turn about, and holds nothing at rest;
     steps that solve for the force of a linear system ask for it once, and derivatives of a motion not at all.
@@ -100,11 +100,7 @@ def _check_arguments(ask: Asked, at: State) -> None:
     (t, q, _), (_, beside, faster) = at, _beside(ask, at, 0.0)
     for name, f, shape in _moving(ask.scene):
         _check_same(name, "time", ask.evaluated(f, shape), at, (t, beside, faster))
-    for name, c in _constraints(ask.scene):
-        if not isinstance(c, LinearContacts):
-            gap = ask.evaluated(c.gap, (c.n_c,))
-            _check_same(f"{name}.gap", "time and coordinates", gap, at, (t, q, faster))
-    for name, f, shape in _of_friction(ask.scene):
+    for name, f, shape in _of_places(ask.scene):
         if callable(f):
             _check_same(name, "time and coordinates", ask.evaluated(f, shape), at, (t, q, faster))
 
@@ -129,6 +125,15 @@ def _moving(scene: Scene) -> Iterator[tuple[str, Callback | None, tuple[int, ...
     for name, c in _constraints(scene):
         if isinstance(c, LinearContacts):
             yield f"{name}.motion", c.motion, (c.n_c, 3)
+
+
+def _of_places(scene: Scene) -> Iterator[tuple[str, Any, tuple[int, ...]]]:
+    """What time and coordinates tell, with the shape that it fills where it is a function."""
+    yield "system.mass", getattr(scene.system, "mass", None), (scene.n_q, scene.n_q)
+    for name, c in _constraints(scene):
+        if not isinstance(c, LinearContacts):
+            yield f"{name}.gap", c.gap, (c.n_c,)
+    yield from _of_friction(scene)
 
 
 def _of_friction(scene: Scene) -> Iterator[tuple[str, Any, tuple[int, ...]]]:

@@ -1,4 +1,4 @@
-"""The force of a `LinearSystem` is one of time: methods and derivatives that solve for it do not ask at a state."""
+"""Forces of a `LinearSystem` are of time, masses of time and places: what solves for them does not ask at a state."""
 
 import math
 
@@ -49,3 +49,13 @@ def test_a_force_of_time_is_taken_as_by_a_general_system():
         for s in (LinearSystem(1.0, force=of_time), System(1, 1.0, of_time))
     ]
     np.testing.assert_allclose(*ends, rtol=0, atol=1e-10)
+
+
+def heavier(t, q, v, p, out):
+    out[0, 0] = 1.0 + 0.5 * v[0] ** 2
+
+
+def test_a_mass_that_depends_on_the_velocity_is_refused_by_name():
+    """It ran, and was told to have steps that are too long, at whatever step: the energy is another one."""
+    with pytest.raises(ValueError, match=r"^system\.mass: expected a function of time and coordinates alone"):
+        ball(System(1, heavier, of_time))
