@@ -52,11 +52,19 @@ class Checked(Lower):
         zero = word(0)
         if op in DIVISIONS:
             self._raise_if(self.builder.icmp_signed("==", b, zero), ZeroDivisionError, "division by zero")
-        elif op is operator.pow and kinds[1].signed and not getattr(kinds[1], "literal_value", -1) >= 0:
+        elif op is operator.pow and kinds[1].signed:
             said = (
                 "an integer to the power of a negative one, which machine code cannot tell from a real number"
             )
             self._raise_if(self.builder.icmp_signed("<", b, zero), ValueError, said)
+            real = ir.DoubleType()
+            power = cgutils.get_or_insert_function(
+                self.module, ir.FunctionType(real, [real, real]), "llvm.pow.f64"
+            )
+            about = self.builder.call(power, [self.builder.sitofp(x, real) for x in (a, b)])
+            below = self.builder.fcmp_ordered("<", about, real(-(2.0 ** (BITS - 1))))
+            above = self.builder.fcmp_ordered(">=", about, real(2.0 ** (BITS - 1)))
+            self._raise_if(self.builder.or_(below, above), OverflowError, TOO_LARGE)
         elif op is operator.lshift:
             outside = self.builder.icmp_unsigned(">=", b, word(BITS))
             moved = self.builder.shl(a, self.builder.and_(b, word(BITS - 1)))

@@ -175,7 +175,15 @@ def moved(n):
     return 0.0 * (1 << (70 if n == 0 else 1))
 
 
-@pytest.mark.parametrize("make", [power, product, total, moved])
+def large_power(n):
+    return 0.0 * 10 ** (19 if n == 0 else 18)
+
+
+def large_negative_power(n):
+    return 0.0 * (-2) ** (65 if n == 0 else 63)
+
+
+@pytest.mark.parametrize("make", [power, product, total, moved, large_power, large_negative_power])
 def test_where_machine_code_has_no_such_integer_it_is_told(make):
     with pytest.raises(
         SimulationError, match=r"t = 0\.3.*in machine code only \(integers have 64 bits there\)"
