@@ -198,7 +198,7 @@ def test_a_map_without_a_border_is_named(capsys, tmp_path):
 def test_a_map_that_is_still_on_its_way_is_not_said_to_have_twice_its_period(capsys):
     # At r = 2.995 the point of period one is stable, with the multiplier 2 - r
     found = json.loads(run_map(capsys, "logistic", "--set", "r=2.995", "--drop", 1500, "--json")[1])
-    assert found["orbit"].startswith("not settled yet")
+    assert found["orbit"].startswith("unsettled, nearing a periodic orbit")
     assert found["lyapunov"] == pytest.approx(np.log(0.995), abs=1e-4)
     found = json.loads(run_map(capsys, "logistic", "--set", "r=2.995", "--drop", 9000, "--json")[1])
     assert found["orbit"] == "period 1"

@@ -1,4 +1,4 @@
-"""Forces that come to the edge of their cone and turn back there: by the closed form of a pendulum on a rough cart."""
+"""Forces that come to the edge of their cone and turn back: by the closed form of a pendulum on a rough cart."""
 
 import numpy as np
 import pytest
