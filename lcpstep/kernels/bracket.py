@@ -94,6 +94,10 @@ class Bracket:
         else:
             self.b = self.x
 
+    def halve(self, as_at_a: bool) -> None:
+        """Of the function at x no more than whether its sign is that at a: seek in the middle of what is left."""
+        self.take(1.0 if as_at_a == self.positive else -1.0, 0.0)
+
     def newton(self, f: float, slope: float) -> None:
         """The same with Newton's step: f over its slope."""
         self.take(f, -f / slope if slope != 0.0 else 0.0)

@@ -42,11 +42,7 @@ OFF = 1.0  # value of a guard that a contact does not have
 
 def look(s: Rubbing, t: float, y: Doubles) -> bool:
     """All guards at a state, into `value`; False where one is not finite."""
-    if not right_hand_side(s, t, y, s.dy):
-        return False
-    if s.rows.n_held == 0:
-        renew_rates(s.rows, t, y, after(y, s.n_q))
-    return read(s, t, y)
+    return right_hand_side(s, t, y, s.dy) and read_with_rates(s, t, y)
 
 
 def look_at_stage(s: Rubbing, stage: int, t: float, y: Doubles) -> bool:
@@ -54,6 +50,13 @@ def look_at_stage(s: Rubbing, stage: int, t: float, y: Doubles) -> bool:
     renew_rates(s.rows, t, y, after(y, s.n_q))
     copy(s.multiplier, after(s.loads, stage * s.n_r), s.n_r)
     return measure_friction(s, t, y) and read(s, t, y)
+
+
+def read_with_rates(s: Rubbing, t: float, y: Doubles) -> bool:
+    """The same where the forces of the state are known, and with them the rates, if any row is held."""
+    if s.rows.n_held == 0:
+        renew_rates(s.rows, t, y, after(y, s.n_q))
+    return read(s, t, y)
 
 
 def read(s: Rubbing, t: float, y: Doubles) -> bool:

@@ -70,8 +70,14 @@ def know_rows(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
         return False
     if s.rows.n_held == 0:
         renew_rates(s.rows, t, y, after(y, s.n_q))
-        renew_biases(s.rows, t, y, after(y, s.n_q))
+    know_biases(s, t, y)
     return True
+
+
+def know_biases(s: Rubbing, t: float, y: Doubles) -> None:
+    """Biases of all rows where rates and forces are known; if any row is held these have needed them already."""
+    if s.rows.n_held == 0:
+        renew_biases(s.rows, t, y, after(y, s.n_q))
 
 
 def accelerate(s: Rubbing, t: float, y: Doubles, a: Doubles) -> None:

@@ -17,11 +17,11 @@ import cython
 
 from lcpstep.events.codes import OPEN
 from lcpstep.events.contacts.equations import measure_gaps
-from lcpstep.events.contacts.held import know_rows
+from lcpstep.events.contacts.held import know_biases, know_rows
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.hybrid.roots import NONE
 from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
-from lcpstep.events.rows.equations import renew_biases, size_of
+from lcpstep.events.rows.equations import size_of
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.quadratic import first_zero
 from lcpstep.kernels.vectors import largest, product
@@ -216,8 +216,7 @@ def interrupt(s: Rubbing, g: int, tau: float) -> None:
 
 def carry(s: Rubbing) -> None:
     """Beyond the end of a step without an event low hops go on, unless the surface jumps there; `dy` is known."""
-    if s.rows.n_held == 0:
-        renew_biases(s.rows, s.clock.t0, s.q, s.v)
+    know_biases(s, s.clock.t0, s.y)
     for c in range(s.n_c):
         i = s.n_j + c
         u = product(s.R, s.v, i, s.n_q) + s.rate[i]

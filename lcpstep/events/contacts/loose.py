@@ -11,6 +11,7 @@ import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.equations import force_noise, size_of_loads
+from lcpstep.events.contacts.held import know_biases
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.rows.contacts import rubs
 from lcpstep.events.rows.equations import renew_biases, size_of_acceleration
@@ -55,8 +56,8 @@ def notice(s: Rubbing, place: float, t: float) -> None:
     if place == 1.0:
         a = after(s.K, STAGES * s.n + s.n_q)
         renew_biases(s.rows, t, s.y_new, after(s.y_new, s.n_q))
-    elif s.rows.n_held == 0:
-        renew_biases(s.rows, t, s.seen, after(s.seen, s.n_q))
+    else:
+        know_biases(s, t, s.seen)
     if straying(s, a, DRIFT) < 0:
         s.kept_to = place
     else:
@@ -82,14 +83,10 @@ def first_stray(s: Rubbing, h: float, low: float, high: float) -> bool:
 
 def first_beyond(s: Rubbing, low: float, high: float, h: float, level: float) -> float:
     """Where between low and high, at which it is, an acceleration comes to be beyond that share of its terms."""
-    a, b = low, high
-    while b - a > max(NEAR * min(b - low, high - a), RESOLUTION):
-        middle = 0.5 * (a + b)
-        if s.straying_at(middle, h, level) >= 0:
-            b = middle
-        else:
-            a = middle
-    return b
+    s.bracket.begin(low, high, True, 0.5 * (low + high))
+    while s.bracket.seek(max(NEAR * min(s.bracket.b - low, high - s.bracket.a), RESOLUTION)):
+        s.bracket.halve(s.straying_at(s.bracket.x, h, level) < 0)
+    return s.bracket.b
 
 
 def straying(s: Rubbing, a: Doubles, level: float) -> int:

@@ -27,12 +27,11 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
 
     UNKNOWN where a state is not finite.
     """
-    t0, change = s.clock.t0, 0.0
-    tau = min(s.found * h, longest)
+    tau, change = min(s.found * h, longest), 0.0
     if tau <= 0.0:
         return 0.0
     for k in range(REFINEMENTS + 1):
-        if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new)):
+        if not look_after(s, tau):
             return UNKNOWN
         change = missing(s, g)
         if abs(change) <= NEAR * tau or abs(change) > 1e-3 * h or k == REFINEMENTS:
@@ -40,7 +39,7 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
         if tau + change <= 0.0:  # of so short a way the polynomial knows more than secants
             break
         tau = min(tau + change, longest)
-    if not s.complete(t0, tau):
+    if not s.complete(s.clock.t0, tau):
         return UNKNOWN
     if abs(change) <= NEAR * tau:
         tau = creep(s, g, tau, change, longest)
@@ -73,24 +72,20 @@ def turns_at_once(s: Rubbing, g: int, tau: float, h: float) -> bool:
 
 def close_in(s: Rubbing, g: int, tau: float, longest: float) -> float:
     """The same by halving, down to the rounding of the time, just after the jump; where it has none, tau."""
-    t0, low, high = s.clock.t0, 0.0, longest
-    if s.value[g] < 0.0:
-        high = tau
-    else:
-        low = tau
-    falls = s.step(t0, high) and look_at_stage(s, STAGES, t0 + high, s.y_new) and s.value[g] < 0.0
-    while falls and high - low > 2.0 * RESOLUTION * (abs(t0) + high):
-        middle = 0.5 * (low + high)
-        if not (s.step(t0, middle) and look_at_stage(s, STAGES, t0 + middle, s.y_new)):
-            return UNKNOWN
-        if s.value[g] < 0.0:
-            high = middle
-        else:
-            low = middle
-    tau = high if falls else tau
-    if not (s.step(t0, tau) and look_at_stage(s, STAGES, t0 + tau, s.y_new) and s.complete(t0, tau)):
-        return UNKNOWN
-    return tau
+    s.bracket.begin(0.0, longest, True, tau)
+    s.bracket.halve(s.value[g] >= 0.0)
+    if look_after(s, s.bracket.b) and s.value[g] < 0.0:
+        while s.bracket.seek(2.0 * RESOLUTION * (abs(s.clock.t0) + s.bracket.b)):
+            if not look_after(s, s.bracket.x):
+                return UNKNOWN
+            s.bracket.halve(s.value[g] >= 0.0)
+        tau = s.bracket.b
+    return tau if look_after(s, tau) and s.complete(s.clock.t0, tau) else UNKNOWN
+
+
+def look_after(s: Rubbing, tau: float) -> bool:
+    """A step of length tau, and all guards where it ends; False where a state is not finite."""
+    return s.step(s.clock.t0, tau) and look_at_stage(s, STAGES, s.clock.t0 + tau, s.y_new)
 
 
 def of_sliding(s: Rubbing, g: int) -> bool:

@@ -1,4 +1,5 @@
 from lcpstep.events.hybrid.state cimport Motion
+from lcpstep.kernels.bracket cimport Bracket
 from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.kernels.model cimport Model

@@ -14,7 +14,6 @@ from lcpstep.arrays import doubles, indices
 from lcpstep.events.codes import ENTERED
 from lcpstep.events.hybrid.roots import SAMPLES, Scan
 from lcpstep.events.rows.contacts import Contacts
-from lcpstep.kernels.bracket import Bracket
 from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.dop853 import ALL
 from lcpstep.kernels.rungekutta import RungeKutta
@@ -51,7 +50,7 @@ class Rubbing(RungeKutta):
     hops, height, rise, bend : (n_c,)   a hop begins, or is under way, at the base; its gap, velocity, acceleration
     lands, hopping               when it lands, see `hops`; whether there are any
     carried, speed : (n_c,)      `height` is known better than by q at the base to come; the velocity there
-    bracket                      in which a landing is sought
+    bracket                      in which times are sought: that of `scan`
     flying                       no contact is closed: their gaps tell all
     watch, watched               what looks at the guards of modes, see `switching`; whether the system has any
     guards                       LOOKED, or since then a mode has begun (ENTERED), or velocities have jumped (JUMPED)
@@ -136,7 +135,7 @@ class Rubbing(RungeKutta):
         self.speed = after(self.bend, n_c)
         self.jumped = after(self.speed, n_c)
         self.stray, self.loose = after(self.jumped, n_c), 0
-        self.bracket, self.hopping = Bracket(), False
+        self.bracket, self.hopping = self.scan.bracket, False
         self.watch, self.watched, self.guards = None, False, ENTERED
         self.flying = False
         self.marks = np.zeros(5 * n_c, dtype=np.intp)

@@ -16,12 +16,13 @@ import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.equations import size_of_loads
-from lcpstep.events.contacts.guards import first_fall, read
+from lcpstep.events.contacts.guards import first_fall, read, read_with_rates
+from lcpstep.events.contacts.held import know_biases
 from lcpstep.events.contacts.hops import FAINT
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
 from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
-from lcpstep.events.rows.equations import measure_biases, renew_rates, size_of
+from lcpstep.events.rows.equations import size_of
 from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.quadratic import first_zero
 from lcpstep.kernels.vectors import copy, largest, product
@@ -78,7 +79,7 @@ def note(s: Strides, t: float, y: Doubles, v: Doubles, dy: Doubles, value: Doubl
 
     v : the velocity on the rows held
     """
-    if not read_guards(s, t, y):
+    if not read_with_rates(s, t, y):
         return False
     copy(value, s.value, GUARDS * s.n_c)
     a = after(dy, s.n_q)
@@ -103,22 +104,9 @@ def note_bends(s: Strides, t: float, y: Doubles, dy: Doubles, bend: Doubles) -> 
             bend[c] = bend_of(s, c, dy)
 
 
-def know_biases(s: Strides, t: float, y: Doubles) -> None:
-    """What rows accelerate by themselves, at a state whose rates are known."""
-    if s.rows.n_held == 0 and not (s.constant and not s.rows.moving):
-        measure_biases(s.rows, t, y, after(y, s.n_q))
-
-
 def bend_of(s: Strides, c: int, dy: Doubles) -> float:
     """Acceleration of gap c where that is known."""
     return product(s.R, after(dy, s.n_q), s.n_j + c, s.n_q) + s.bias[s.n_j + c]
-
-
-def read_guards(s: Strides, t: float, y: Doubles) -> bool:
-    """Guards at a state whose rates and forces are known, into `value`; False where one is not finite."""
-    if s.rows.n_held == 0:
-        renew_rates(s.rows, t, y, after(y, s.n_q))
-    return read(s, t, y)
 
 
 def note_arrival(s: Strides, t: float, h: float) -> bool:
@@ -169,14 +157,11 @@ def hides(s: Strides, t: float, h: float) -> bool:
     """
     if s.rows.fixed and not s.rows.moving:
         return False
-    known = False
     for c in range(s.n_c):
         g = GUARDS * c
         gap, u, later = s.begin_value[g], s.begin_slope[g], s.end_slope[g]
         if s.mode[c] == OPEN and later > 0.0 and gap < h * (abs(u) + later) and s.end_value[g] > s.band[g]:
-            if not known:
-                know_biases(s, t + h, s.y_new)
-                known = True
+            know_biases(s, t + h, s.y_new)
             if gap + h * (u + 0.5 * h * bend_of(s, c, s.arrival)) < -s.band[g]:
                 return True
     return False
@@ -264,27 +249,32 @@ def locate(s: Strides, g: int, h: float) -> float:
     One that begins within its band, and below zero, acts where it is as far again; a force not before it is past it.
     """
     zero = 0.0 if s.armed[g] == 1 else min(0.0 if is_motion(s, g) else -s.band[g], 2.0 * s.begin_value[g])
-    t0, tau, slope, crossed = s.clock.t0, s.found * h, s.slope, s.end_value[g] < zero
+    tau, slope, crossed = s.found * h, s.slope, s.end_value[g] < zero
     if tau <= 0.0:
         return 0.0
     low = low_flight(s, g)
     if low > 0.0:
-        return low if s.step(t0, low) and read_guards(s, t0 + low, s.y_new) else NOWHERE
-    s.scan.bracket.begin(0.0, h, True, tau)
-    while s.scan.bracket.seek(2.0 * RESOLUTION * (abs(t0) + tau)):
-        tau = s.scan.bracket.x  # the step of that length is the motion taken
-        if not (s.step(t0, tau) and read_guards(s, t0 + tau, s.y_new)):
+        return low if look_after(s, low) else NOWHERE
+    s.bracket.begin(0.0, h, True, tau)
+    while s.bracket.seek(2.0 * RESOLUTION * (abs(s.clock.t0) + tau)):
+        tau = s.bracket.x  # the step of that length is the motion taken
+        if not look_after(s, tau):
             return NOWHERE
         value = s.value[g] - zero
         crossed = crossed or value < 0.0 or (value == 0.0 and s.armed[g] == 1)
-        if s.scan.bracket.looks > 1 and value != s.scan.bracket.value:
-            slope = (value - s.scan.bracket.value) / (tau - s.scan.bracket.seen)
-        s.scan.bracket.newton(value, min(slope, 0.0))  # where it rises: bisection
-        if not crossed and tau + s.scan.bracket.step >= h:  # what has come so near turns back before the end
+        if s.bracket.looks > 1 and value != s.bracket.value:
+            slope = (value - s.bracket.value) / (tau - s.bracket.seen)
+        s.bracket.newton(value, min(slope, 0.0))  # where it rises: bisection
+        if not crossed and tau + s.bracket.step >= h:  # what has come so near turns back before the end
             tau = h
-            if not (s.step(t0, tau) and read_guards(s, t0 + tau, s.y_new)):
+            if not look_after(s, tau):
                 return NOWHERE
             break
     if rises(s, g):
         return NOWHERE
     return tau if crossed or (s.value[g] <= s.band[g] and s.armed[g] == 1) else NOWHERE
+
+
+def look_after(s: Strides, tau: float) -> bool:
+    """A step of length tau, and all guards where it ends; False where there is none, or one is not finite."""
+    return s.step(s.clock.t0, tau) and read_with_rates(s, s.clock.t0 + tau, s.y_new)

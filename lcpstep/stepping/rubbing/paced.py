@@ -14,6 +14,7 @@ from math import pow
 
 import cython
 
+from lcpstep.events.contacts.guards import read_with_rates
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.contacts.step import mark_resting
 from lcpstep.events.rows.jumps import farthest_off, find_jump
@@ -21,7 +22,7 @@ from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 from lcpstep.kernels.vectors import copy, distance, largest
 from lcpstep.pointers import abs, after, inf, max, min
-from lcpstep.stepping.rubbing.found import curve, measure_base, note_arrival, note_middle, read_guards
+from lcpstep.stepping.rubbing.found import curve, measure_base, note_arrival, note_middle
 from lcpstep.stepping.rubbing.let_go import is_motion
 from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
@@ -106,7 +107,7 @@ def halves(s: Strides, t: float, h: float) -> bool:
     """
     n, between = s.n, t + 0.5 * h
     first, second = between - t, (t + h) - between
-    if not (s.step(t, first) and read_guards(s, between, s.y_new)):
+    if not (s.step(t, first) and read_with_rates(s, between, s.y_new)):
         return False
     copy(s.half_value, s.value, GUARDS * s.n_c)
     note_middle(s, t, first, s.quarter_value)

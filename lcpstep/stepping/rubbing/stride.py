@@ -32,9 +32,9 @@ from lcpstep.stepping.rubbing.found import (
     hides,
     interrupt,
     locate,
+    look_after,
     note_arrival,
     note_base,
-    read_guards,
 )
 from lcpstep.stepping.rubbing.paced import pace
 from lcpstep.stepping.rubbing.strides import Strides, push_end_back
@@ -107,8 +107,8 @@ def search(s: Strides, t: float, h: float) -> int:
         s.tau = locate(s, s.guard, h) if first_event(s, h) >= 0 else NOWHERE
         if s.loose > 0 and first_stray(s, h, 0.0, 1.0 if s.tau == NOWHERE else s.tau / h):
             s.tau = s.found * h
-            if s.tau > 0.0 and s.step(t, s.tau):
-                read_guards(s, t + s.tau, s.y_new)
+            if s.tau > 0.0:
+                look_after(s, s.tau)
         if s.tau != NOWHERE and turns_at_once(s, s.guard):
             s.clock.break_at(t + s.tau)
             s.guard = TORN
