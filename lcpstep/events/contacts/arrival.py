@@ -24,8 +24,8 @@ from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.contacts.surfaces import find_coming, find_touching, lift
 from lcpstep.events.rows.accelerations import accelerate_as_held
 from lcpstep.events.rows.contacts import gap_tolerance, sliding, still
+from lcpstep.events.rows.equations import acceleration_of
 from lcpstep.kernels.status import DONE, NOT_FINITE
-from lcpstep.kernels.vectors import product
 from lcpstep.pointers import abs, max
 
 
@@ -133,12 +133,12 @@ def stop_with(s: Rubbing, c: int) -> None:
     """
     i = s.n_j + s.n_c + c
     accelerate_as_held(s.rows)
-    own = product(s.R, s.a, i, s.n_q) + s.bias[i]
+    own = acceleration_of(s.rows, i, s.a)
     if own == 0.0:
         return
     for d in range(s.n_c):
         k = s.n_j + s.n_c + d
-        with_it = s.velocity[i] * (product(s.R, s.a, k, s.n_q) + s.bias[k]) / own
+        with_it = s.velocity[i] * acceleration_of(s.rows, k, s.a) / own
         if abs(s.velocity[k] - with_it) <= still(s.rows, k) + EDGE * abs(with_it):
             s.free[d] = 1
 

@@ -17,8 +17,9 @@ from lcpstep.events.contacts.modes import adopt_modes, decide
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import touching
 from lcpstep.events.rows.accelerations import accelerate_as_held, accelerate_on_joints
+from lcpstep.events.rows.equations import acceleration_of
 from lcpstep.kernels.status import DONE, NOT_FINITE
-from lcpstep.kernels.vectors import clear, copy_indices, product
+from lcpstep.kernels.vectors import clear, copy_indices
 from lcpstep.pointers import abs, min
 
 MOMENT, SHORTEST, SHORTER = 1e-4, 1e-9, 0.1  # of the next step; and how much shorter where a hop can be told
@@ -88,7 +89,7 @@ def foresee(s: Rubbing, t: float, tau: float) -> bool:
     n = s.n_q
     accelerate_on_joints(s.rows)
     for i in range(s.n_r):
-        s.doubt[i] = product(s.R, s.a, i, n) + s.bias[i]
+        s.doubt[i] = acceleration_of(s.rows, i, s.a)
     for j in range(n):
         s.seen[j] = s.q[j] + tau * s.v[j]
         s.seen[n + j] = s.v[j] + tau * s.a[j]
@@ -96,7 +97,7 @@ def foresee(s: Rubbing, t: float, tau: float) -> bool:
         return False
     accelerate_on_joints(s.rows)
     for i in range(s.n_r):
-        s.doubt[i] = DOUBTFUL * abs(product(s.R, s.a, i, n) + s.bias[i] - s.doubt[i])
+        s.doubt[i] = DOUBTFUL * abs(acceleration_of(s.rows, i, s.a) - s.doubt[i])
     return measure(s, t, s.y)
 
 

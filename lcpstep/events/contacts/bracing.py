@@ -18,10 +18,9 @@ from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.accelerations import accelerate_as_held
 from lcpstep.events.rows.contacts import hold_modes
-from lcpstep.events.rows.equations import size_of_acceleration
+from lcpstep.events.rows.equations import acceleration_of, size_of_acceleration
 from lcpstep.events.rows.held import is_held
 from lcpstep.kernels.clock import NOISE
-from lcpstep.kernels.vectors import product
 from lcpstep.pointers import abs, max
 
 MOST = 4  # contacts at rest: of more not every way is tried
@@ -126,4 +125,4 @@ def is_still(s: Rubbing, i: int, rounding: float) -> bool:
     """Whether row i has no acceleration, or what that rounding of forces makes of none."""
     size = size_of_acceleration(s.rows, i, s.a) + size_of_loads(s, i)
     none = STILL * size + rounding * s.W[i * s.n_r + i]
-    return abs(product(s.R, s.a, i, s.n_q) + s.bias[i]) <= none
+    return abs(acceleration_of(s.rows, i, s.a)) <= none

@@ -36,11 +36,11 @@ from lcpstep.events.rows.contacts import (
     still,
     take_velocities,
 )
-from lcpstep.events.rows.equations import size_of
+from lcpstep.events.rows.equations import acceleration_of, size_of, velocity_of
 from lcpstep.events.rows.held import constrain, is_held
 from lcpstep.events.rows.keep import put_on_account
 from lcpstep.kernels.clock import NOISE
-from lcpstep.kernels.vectors import copy, product
+from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import abs, after, max, nan
 
 
@@ -52,7 +52,7 @@ def close_small(s: Rubbing, t: float) -> bool:
     copy(s.a, s.a_free, s.n_q)
     constrain(s.rows, s.a, s.bias)
     for c in range(s.n_c):
-        s.rows.curve[c] = product(s.R, s.a, s.n_j + c, s.n_q) + s.bias[s.n_j + c]
+        s.rows.curve[c] = acceleration_of(s.rows, s.n_j + c, s.a)
     if not find_over(s.rows) or not stays_so(s, t):
         return False
     take_along(s.rows)
@@ -78,7 +78,7 @@ def rests(s: Rubbing, c: int) -> bool:
     i = s.n_j + s.n_c + c
     if not rubs(s.rows, c) or s.mu_s[c] == s.mu[c] or hops_beside(s.rows, c, True):
         return False
-    pull = abs(product(s.R, s.a, i, s.n_q) + s.bias[i])
+    pull = abs(acceleration_of(s.rows, i, s.a))
     most = sqrt(2.0 * pull * NOISE * size_of(s.rows, i, 0.0, s.q))
     return abs(sliding(s.rows, c)) <= max(most, still(s.rows, i))
 
@@ -93,7 +93,7 @@ def stops_others(s: Rubbing, c: int, T: float) -> bool:
     for d in range(s.n_c):
         k, slip = s.n_j + s.n_c + d, sliding(s.rows, d)
         if d != c and s.mode[d] == SLIDES and rubs(s.rows, d) and (passed_on or meets(s.rows, c, k)):
-            stops = slip * (slip + T * (product(s.R, s.a, k, s.n_q) + s.bias[k])) < 0.0
+            stops = slip * (slip + T * acceleration_of(s.rows, k, s.a)) < 0.0
             if stops and s.model.restitution[c] * abs(slip) > still(s.rows, k):
                 return True
     return False
@@ -126,7 +126,7 @@ def later(s: Rubbing, c: int, t: float, T: float) -> float:
         q[j] = s.q[j] + T * s.v[j]
         v[j] = s.v[j] + T * s.a[j]
     if know_rows(s, t + T, s.seen, s.dy):
-        curve = product(s.R, after(s.dy, n), i, n) + s.bias[i]
+        curve = acceleration_of(s.rows, i, after(s.dy, n))
     measure(s, t, s.y)
     hold_modes(s.rows)
     return curve
@@ -174,9 +174,9 @@ def slides_on(s: Rubbing, i: int, slip: float) -> bool:
     copy(s.dv, s.v, s.n_q)
     constrain(s.rows, s.dv, s.rate)
     k = i - s.n_c
-    u = product(s.R, s.dv, k, s.n_q) + s.rate[k]
+    u = velocity_of(s.rows, k, s.dv)
     stopped = is_held(s.rows, k) or abs(u) <= s.rows.noise(k - s.n_j)
-    return stopped and (product(s.R, s.dv, i, s.n_q) + s.rate[i]) * slip > 0.0
+    return stopped and velocity_of(s.rows, i, s.dv) * slip > 0.0
 
 
 def leaves_cone(s: Rubbing, c: int) -> bool:

@@ -13,10 +13,11 @@ from lcpstep.events.rows.equations import (
     renew_rates,
     respond,
     size_of,
+    velocity_of,
 )
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.dynamics import gaps
-from lcpstep.kernels.vectors import copy, largest, product
+from lcpstep.kernels.vectors import copy, largest
 from lcpstep.pointers import Doubles, abs, after, max, min
 
 
@@ -38,7 +39,7 @@ def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
     q, v = y, after(y, s.n_q)
     for c in range(s.n_c):
         i = s.n_j + s.n_c + c
-        s.slip[c] = product(s.R, v, i, s.n_q) + s.rate[i]
+        s.slip[c] = velocity_of(s.rows, i, v)
         sticks = s.mode[c] == STICKS or s.mode[c] == LEANS
         if sticks or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0):
             s.slip[c] = 0.0

@@ -24,12 +24,12 @@ from lcpstep.events.contacts.loose import forget, notice
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.hybrid.roots import DEGREE, NONE, SAMPLES, convert, first_rise, taylor
 from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
-from lcpstep.events.rows.equations import renew_rates, size_of
+from lcpstep.events.rows.equations import renew_rates, size_of, velocity_of
 from lcpstep.events.rows.held import is_held
 from lcpstep.events.rows.on_joints import is_led
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.dop853 import STAGES
-from lcpstep.kernels.vectors import copy, largest, product
+from lcpstep.kernels.vectors import copy, largest
 from lcpstep.pointers import Doubles, abs, after, max, min
 
 PARTS = 64  # of a step, at most, in which guards are polynomials
@@ -76,7 +76,7 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
         if is_held(s.rows, i) or (s.mode[c] == LEANS and is_held(s.rows, i + s.n_c)):
             s.value[k] = s.multiplier[i]
         if s.mode[c] == SLIDES and rubs(s.rows, c):
-            slip = product(s.R, v, i + s.n_c, s.n_q) + s.rate[i + s.n_c]
+            slip = velocity_of(s.rows, i + s.n_c, v)
             s.value[k + 1] = s.direction[c] * slip
         elif s.mode[c] == STICKS:
             most = most_friction(s, c)

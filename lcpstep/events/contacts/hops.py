@@ -21,10 +21,10 @@ from lcpstep.events.contacts.held import know_biases, know_rows
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.hybrid.roots import NONE
 from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
-from lcpstep.events.rows.equations import size_of
+from lcpstep.events.rows.equations import acceleration_of, size_of, velocity_of
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.quadratic import first_zero
-from lcpstep.kernels.vectors import largest, product
+from lcpstep.kernels.vectors import largest
 from lcpstep.pointers import abs, after, inf, max, min, nan
 
 # In place of a landing: there is none within the step; it is NONE where the gap itself is to be looked at
@@ -57,11 +57,11 @@ def begin_hops(s: Rubbing) -> None:
     for c in range(s.n_c):
         i = s.n_j + c
         carried = s.carried[c] == 1 and s.mode[c] == OPEN
-        u = product(s.R, s.v, i, s.n_q) + s.rate[i]
+        u = velocity_of(s.rows, i, s.v)
         low = s.touches[c] == 1 or s.gap[i] <= s.rows.rounding_of_gap(c)
         begins = s.mode[c] == OPEN and low and u > s.terms[c]
         s.height[c] = s.height[c] if carried else 0.0
-        s.rise[c], s.bend[c] = u, product(s.R, after(s.dy, s.n_q), i, s.n_q) + s.bias[i]
+        s.rise[c], s.bend[c] = u, acceleration_of(s.rows, i, after(s.dy, s.n_q))
         s.hops[c], s.lands[c], s.carried[c] = 1 if carried or begins else 0, NONE, 1 if carried else 0
         s.hopping = s.hopping or s.hops[c] == 1
 
@@ -168,7 +168,7 @@ def change_of_bend(s: Rubbing, c: int, tau: float) -> float:
     s.at(tau / s.length, s.seen)
     if not know_rows(s, t, s.seen, s.dy):
         return nan
-    return product(s.R, after(s.dy, s.n_q), i, s.n_q) + s.bias[i] - s.bend[c]
+    return acceleration_of(s.rows, i, after(s.dy, s.n_q)) - s.bend[c]
 
 
 def eighth_power(d0: float, d1: float, d2: float, d3: float, most: float) -> float:
@@ -219,7 +219,7 @@ def carry(s: Rubbing) -> None:
     know_biases(s, s.clock.t0, s.y)
     for c in range(s.n_c):
         i = s.n_j + c
-        u = product(s.R, s.v, i, s.n_q) + s.rate[i]
+        u = velocity_of(s.rows, i, s.v)
         errors = STEADY * size_of(s.rows, i, s.rate[i], s.v) + speed_tolerance(s.rows, i)
         if s.carried[c] == 1 and abs(u - s.speed[c]) > errors:
             s.carried[c] = 0

@@ -14,11 +14,10 @@ from lcpstep.events.contacts.equations import force_noise, size_of_loads
 from lcpstep.events.contacts.held import know_biases
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.rows.contacts import rubs
-from lcpstep.events.rows.equations import renew_biases, size_of_acceleration
+from lcpstep.events.rows.equations import acceleration_of, renew_biases, size_of_acceleration
 from lcpstep.events.rows.held import DRIFT, is_held
 from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.dop853 import STAGES
-from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles, abs, after, max, min
 
 NEAR = 1e-3  # of the way to either end of where it is sought: how well a time is known
@@ -103,7 +102,7 @@ def strays(s: Rubbing, i: int, a: Doubles, least: float) -> bool:
 
     Forces of bodies that hang together are rounded as the largest is: in one that bears none, this leaves as much.
     """
-    alpha = 0.0 if is_held(s.rows, i) else abs(product(s.R, a, i, s.n_q) + s.bias[i])
+    alpha = 0.0 if is_held(s.rows, i) else abs(acceleration_of(s.rows, i, a))
     if alpha == 0.0 or alpha <= least * (size_of_acceleration(s.rows, i, a) + size_of_loads(s, i)):
         return False
     return alpha > force_noise(s) * s.W[i * s.n_r + i]

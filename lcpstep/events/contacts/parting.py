@@ -15,10 +15,11 @@ from lcpstep.events.contacts.modes import decide
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.accelerations import accelerate_on_joints
 from lcpstep.events.rows.contacts import gap_tolerance, hold_modes
+from lcpstep.events.rows.equations import acceleration_of
 from lcpstep.events.rows.held import constrain, hold_joints
 from lcpstep.events.rows.on_joints import is_led
 from lcpstep.kernels.status import DONE
-from lcpstep.kernels.vectors import copy, product
+from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import abs, min
 
 OFF = 1.0  # of the tolerance of a gap: what steps over a turn may leave of it
@@ -32,7 +33,7 @@ def part_before(s: Rubbing) -> None:
     for c in range(s.n_c):
         i = s.n_j + c
         rises = s.mode[c] == OPEN and s.touches[c] == 1 and abs(s.velocity[i]) <= s.terms[c]
-        s.parting[c] = 1 if rises and product(s.R, s.a, i, s.n_q) + s.bias[i] > 0.0 else 0
+        s.parting[c] = 1 if rises and acceleration_of(s.rows, i, s.a) > 0.0 else 0
 
 
 def pass_by(s: Rubbing) -> None:
@@ -49,7 +50,7 @@ def pass_by(s: Rubbing) -> None:
         if not is_led(s.rows, c):
             continue
         accelerate_on_joints(s.rows)
-        alpha = product(s.R, s.a, i, s.n_q) + s.bias[i]
+        alpha = acceleration_of(s.rows, i, s.a)
         if alpha > 0.0 and u * u <= 2.0 * alpha * OFF * gap_tolerance(s.rows, c):
             s.terms[c], s.parting[c] = -u, 1
 

@@ -16,7 +16,7 @@ from lcpstep.kernels.biases import bias
 from lcpstep.kernels.dynamics import gap_rates, gaps, total_force
 from lcpstep.kernels.linear import uncouple_two
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import copy, filled, product_at
+from lcpstep.kernels.vectors import copy, filled, product, product_at
 from lcpstep.pointers import Doubles, abs, after, min
 
 JUMPS = 1e-9  # of velocities: a rate of a gap that changes by less at a corner does so by rounding
@@ -150,6 +150,16 @@ def respond_to(s: Rows, i: int) -> None:
     """What an impulse on row i does."""
     response(s.model, s.M, s.work, after(s.R, i * s.n_q), after(s.MR, i * s.n_q))
     s.n_moved = filled(after(s.MR, i * s.n_q), s.n_q, s.moved)
+
+
+def velocity_of(s: Rows, i: int, v: Doubles) -> float:
+    """The velocity of row i under v."""
+    return product(s.R, v, i, s.n_q) + s.rate[i]
+
+
+def acceleration_of(s: Rows, i: int, a: Doubles) -> float:
+    """The acceleration of row i under a."""
+    return product(s.R, a, i, s.n_q) + s.bias[i]
 
 
 def size_of(s: Rows, i: int, constant: float, x: Doubles) -> float:

@@ -13,7 +13,14 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.rows.equations import other, renew_rates, respond_held, size_of, size_of_acceleration
+from lcpstep.events.rows.equations import (
+    acceleration_of,
+    other,
+    renew_rates,
+    respond_held,
+    size_of,
+    size_of_acceleration,
+)
 from lcpstep.events.rows.on_joints import leave_joints, leave_joints_again, put_on_joints
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import inverse_mass
@@ -217,7 +224,7 @@ def size_of_pushes(s: Rows) -> float:
 def contradiction(s: Rows, a: Doubles) -> int:
     """The first joint left out whose acceleration is not zero under that of the others, or -1."""
     for i in range(s.n_j):
-        off = abs(product(s.R, a, i, s.n_q) + s.bias[i])
+        off = abs(acceleration_of(s, i, a))
         if not is_held(s, i) and off > DISAGREEMENT * size_of_acceleration(s, i, a):
             return i
     return -1

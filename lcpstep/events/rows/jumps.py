@@ -9,13 +9,21 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.rows.equations import JUMPS, least_gap, least_speed, list_gaps, measure_rates, size_of
+from lcpstep.events.rows.equations import (
+    JUMPS,
+    least_gap,
+    least_speed,
+    list_gaps,
+    measure_rates,
+    size_of,
+    velocity_of,
+)
 from lcpstep.events.rows.held import constrain, hold_joints
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.clock import NUDGE
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.sudden import MORE, SUDDEN, coarseness
-from lcpstep.kernels.vectors import add, product
+from lcpstep.kernels.vectors import add
 from lcpstep.pointers import Doubles, abs, after, max
 
 TOLERANCES = 8.0  # of a velocity: what a step leaves of a row held
@@ -46,7 +54,7 @@ def farthest_off(s: Rows, motion: RungeKutta) -> int:
     """The row at rest whose velocity is farthest off from zero at the end of the step, beyond errors of it; or -1."""
     v, found, most = after(motion.y_new, s.n_q), -1, 1.0
     for i in range(s.n_r):
-        u = abs(product(s.R, v, i, s.n_q) + s.rate[i]) if s.rests[i] == 1 else 0.0
+        u = abs(velocity_of(s, i, v)) if s.rests[i] == 1 else 0.0
         if u > most * s.sudden.drift:
             off = u / unseen(s, i, v)
             if off > most:
@@ -58,7 +66,7 @@ def drive_joints(s: Rows, v: Doubles) -> bool:
     """Put velocities onto joints that have jumped at a corner, their impulses into `held`; whether any has."""
     driven = False
     for i in range(s.n_j):
-        driven = driven or abs(product(s.R, v, i, s.n_q) + s.rate[i]) > error(s, i, v)
+        driven = driven or abs(velocity_of(s, i, v)) > error(s, i, v)
     if driven:
         hold_joints(s)
         constrain(s, v, s.rate)
@@ -124,7 +132,7 @@ def velocity(s: Rows, i: int, t: float, y: Doubles) -> float:
     """The velocity of row i at a state."""
     v = after(y, s.n_q)
     measure_rates(s, t, y, v)
-    return product(s.R, v, i, s.n_q) + s.rate[i]
+    return velocity_of(s, i, v)
 
 
 def hidden_by_rounding(s: Rows, motion: RungeKutta, i: int) -> float:

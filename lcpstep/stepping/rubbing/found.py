@@ -22,10 +22,10 @@ from lcpstep.events.contacts.hops import FAINT
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
 from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
-from lcpstep.events.rows.equations import size_of
+from lcpstep.events.rows.equations import acceleration_of, size_of, velocity_of
 from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.quadratic import first_zero
-from lcpstep.kernels.vectors import copy, largest, product
+from lcpstep.kernels.vectors import copy, largest
 from lcpstep.pointers import Doubles, abs, after, max, min
 from lcpstep.stepping.rubbing.let_go import hops, is_motion, rises, widen_until_decided
 from lcpstep.stepping.rubbing.strides import Strides, push_end_back
@@ -86,9 +86,9 @@ def note(s: Strides, t: float, y: Doubles, v: Doubles, dy: Doubles, value: Doubl
     for c in range(s.n_c):
         i = s.n_j + c
         if s.mode[c] == OPEN:
-            slope[GUARDS * c] = product(s.R, v, i, s.n_q) + s.rate[i]
+            slope[GUARDS * c] = velocity_of(s.rows, i, v)
         elif s.mode[c] == SLIDES and rubs(s.rows, c):
-            turn = product(s.R, a, i + s.n_c, s.n_q) + s.bias[i + s.n_c]
+            turn = acceleration_of(s.rows, i + s.n_c, a)
             slope[GUARDS * c + 1] = s.direction[c] * turn
     return True
 
@@ -101,12 +101,7 @@ def note_bends(s: Strides, t: float, y: Doubles, dy: Doubles, bend: Doubles) -> 
             if not known:
                 know_biases(s, t, y)
                 known = True
-            bend[c] = bend_of(s, c, dy)
-
-
-def bend_of(s: Strides, c: int, dy: Doubles) -> float:
-    """Acceleration of gap c where that is known."""
-    return product(s.R, after(dy, s.n_q), s.n_j + c, s.n_q) + s.bias[s.n_j + c]
+            bend[c] = acceleration_of(s.rows, s.n_j + c, after(dy, s.n_q))
 
 
 def note_arrival(s: Strides, t: float, h: float) -> bool:
@@ -162,7 +157,10 @@ def hides(s: Strides, t: float, h: float) -> bool:
         gap, u, later = s.begin_value[g], s.begin_slope[g], s.end_slope[g]
         if s.mode[c] == OPEN and later > 0.0 and gap < h * (abs(u) + later) and s.end_value[g] > s.band[g]:
             know_biases(s, t + h, s.y_new)
-            if gap + h * (u + 0.5 * h * bend_of(s, c, s.arrival)) < -s.band[g]:
+            if (
+                gap + h * (u + 0.5 * h * acceleration_of(s.rows, s.n_j + c, after(s.arrival, s.n_q)))
+                < -s.band[g]
+            ):
                 return True
     return False
 

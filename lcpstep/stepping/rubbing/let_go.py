@@ -12,7 +12,7 @@ import cython
 from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.rows.contacts import rubs
-from lcpstep.kernels.vectors import product
+from lcpstep.events.rows.equations import velocity_of
 from lcpstep.pointers import abs, after, max
 from lcpstep.stepping.rubbing.strides import Strides
 
@@ -41,7 +41,7 @@ def rises(s: Strides, g: int) -> bool:
     if s.armed[g] == 1 or g % GUARDS > 0 or s.mode[c] != OPEN:
         return False
     i, none = s.n_j + c, s.terms[c]
-    u = product(s.R, after(s.y_new, s.n_q), i, s.n_q) + s.rate[i]
+    u = velocity_of(s.rows, i, after(s.y_new, s.n_q))
     return u > (-none if s.begin_bend[c] > 0.0 else none)
 
 
