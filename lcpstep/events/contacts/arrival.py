@@ -23,7 +23,7 @@ from lcpstep.events.contacts.parting import part_before
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.contacts.surfaces import find_coming, find_touching, lift
 from lcpstep.events.rows.accelerations import accelerate_as_held
-from lcpstep.events.rows.contacts import gap_tolerance, sliding, still
+from lcpstep.events.rows.contacts import gap_tolerance, has_stopped, still
 from lcpstep.events.rows.equations import acceleration_of
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.pointers import abs, max
@@ -54,19 +54,11 @@ def changes(s: Rubbing) -> bool:
 
     A force that jumps may do so later than its guard's polynomial has seen it.
     """
-    some = differ(s)
-    for c in range(s.n_c):  # as where the load goes over to the other wall of a slit
-        some = some or s.new_loaded[c] != s.loaded[c]
+    some = False
+    for c in range(s.n_c):  # the load alone changes where it goes over to the other wall of a slit
+        some = some or is_other(s, c) or s.new_loaded[c] != s.loaded[c]
     if not some:
         find_standing(s)
-    return some
-
-
-def differ(s: Rubbing) -> bool:
-    """Whether the modes just decided are others than those at hand."""
-    some = False
-    for c in range(s.n_c):
-        some = some or is_other(s, c)
     return some
 
 
@@ -76,7 +68,7 @@ def is_other(s: Rubbing, c: int) -> bool:
 
 
 def tells(s: Rubbing) -> bool:
-    """Whether the same are others of which more is known than that a contact is at the edge of its cone."""
+    """Whether modes just decided are others, of which more is known than that they are at the edge of the cone."""
     some = False
     for c in range(s.n_c):
         some = some or (is_other(s, c) and not wavers(s, c))
@@ -121,7 +113,7 @@ def land_with(s: Rubbing) -> None:
         i = s.n_j + d
         least = max(s.rows.rounding_of_gap(d), share * gap_tolerance(s.rows, d))
         lies = s.mode[d] == OPEN and s.gap[i] <= least
-        if lies and abs(s.velocity[i]) <= s.terms[d] and abs(sliding(s.rows, d)) <= still(s.rows, i + s.n_c):
+        if lies and abs(s.velocity[i]) <= s.terms[d] and has_stopped(s.rows, d):
             s.mode[d] = SLIDES
 
 
@@ -149,5 +141,4 @@ def find_standing(s: Rubbing) -> None:
     Feet of one body that share a direction are among these: one of them is held, the others have a share of the load.
     """
     for c in range(s.n_c):
-        rests = s.n_t == 0 or s.mode[c] == STICKS or s.mode[c] == LEANS
-        s.free[c] = 1 if rests or abs(sliding(s.rows, c)) <= still(s.rows, s.n_j + s.n_c + c) else 0
+        s.free[c] = 1 if s.mode[c] in (STICKS, LEANS) or has_stopped(s.rows, c) else 0

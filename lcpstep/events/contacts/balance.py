@@ -12,7 +12,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN, STICKS
-from lcpstep.events.contacts.equations import force_noise, measure
+from lcpstep.events.contacts.equations import force_noise, measure, share_left
 from lcpstep.events.contacts.modes import adopt_modes, decide
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import touching
@@ -106,5 +106,5 @@ def cannot_be_told(s: Rubbing, tau: float) -> bool:
     untold, long = True, DOUBTFUL * tau
     for c in range(s.n_c):
         if s.mode[c] != OPEN and s.new_mode[c] == OPEN:
-            untold = untold and s.doubt[s.n_j + c] * long * long <= touching(s, c)
+            untold = untold and s.doubt[s.n_j + c] * long * long <= touching(s, c, share_left(s))
     return untold

@@ -85,7 +85,7 @@ def said_by(s: Rubbing, i: int) -> int:
 
 def rests(s: Rubbing, c: int) -> bool:
     """Whether contact c is pressed and does not slide, as the modes were found."""
-    return s.new_mode[c] == STICKS or s.new_mode[c] == LEANS
+    return s.new_mode[c] in (STICKS, LEANS)
 
 
 def choose(s: Rubbing, way: int) -> None:

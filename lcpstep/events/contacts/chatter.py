@@ -15,6 +15,7 @@ from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.held import know_rows
 from lcpstep.events.contacts.impact import find_free
 from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.rows.accelerations import accelerate
 from lcpstep.events.rows.chatter import (
     disturbs,
     find_over,
@@ -49,8 +50,7 @@ def close_small(s: Rubbing, t: float) -> bool:
 
     Modes must be obeyed, everything measured at the base.
     """
-    copy(s.a, s.a_free, s.n_q)
-    constrain(s.rows, s.a, s.bias)
+    accelerate(s.rows)
     for c in range(s.n_c):
         s.rows.curve[c] = acceleration_of(s.rows, s.n_j + c, s.a)
     if not find_over(s.rows) or not stays_so(s, t):

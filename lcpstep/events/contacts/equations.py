@@ -40,8 +40,7 @@ def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
     for c in range(s.n_c):
         i = s.n_j + s.n_c + c
         s.slip[c] = velocity_of(s.rows, i, v)
-        sticks = s.mode[c] == STICKS or s.mode[c] == LEANS
-        if sticks or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0):
+        if s.mode[c] in (STICKS, LEANS) or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0):
             s.slip[c] = 0.0
     return s.coefficients.measure(s.clock.inside(t), q, s.slip)
 

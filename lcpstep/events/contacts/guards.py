@@ -91,12 +91,10 @@ def begin_guards(s: Rubbing, t: float) -> bool:
     if not look(s, t, s.y):
         return False
     begin_hops(s)
-    s.flying = True
-    for c in range(s.n_c):
-        s.flying = s.flying and s.mode[c] == OPEN
-    forces, share = force_noise(s), share_left(s)
+    s.flying, forces, share = True, force_noise(s), share_left(s)
     for c in range(s.n_c):
         k, i = GUARDS * c, s.n_j + c
+        s.flying = s.flying and s.mode[c] == OPEN
         if s.mode[c] == OPEN:
             noise = s.rows.rounding_of_gap(c) + share * no_gap(s, c, s.rise[c], s.bend[c])
             s.band[k] = max(noise + depth(s, c), -2.0 * s.value[k])  # deeper than it is now

@@ -16,7 +16,7 @@ from lcpstep.events.contacts.equations import renew_friction
 from lcpstep.events.contacts.parting import approaches, let_go, pass_by, rejoin
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import GONE
-from lcpstep.events.rows.contacts import measure_velocities, sliding, still, stop_rows
+from lcpstep.events.rows.contacts import has_stopped, measure_velocities, sliding, still, stop_rows
 from lcpstep.events.rows.cycle import ROUNDS, fades, look_back, recurs, sum_up
 from lcpstep.events.rows.exchange import leave_for_later, some_exchange
 from lcpstep.events.rows.held import hold_joints
@@ -77,11 +77,9 @@ def strike(s: Rubbing, t: float, plastic: bool) -> bool:
     impact is a plastic one. With friction there are some that are hard to find.
     """
     look_before(s)
-    if s.n_t == 0:
-        return strike_by_either(s, t, plastic)
     copy_indices(s.tried, s.mode, s.n_c)
     found = strike_by_either(s, t, plastic)
-    if not found:
+    if not found and s.n_t > 0:
         # The plastic one has closed all that touch, and not only what is struck
         copy_indices(s.mode, s.tried, s.n_c)
         s.problem.work.thorough = True
@@ -125,7 +123,7 @@ def take_for_none(s: Rubbing, c: int) -> None:
     Beside other velocities what is left of one that has died away, 1e-49, keeps solvers from an answer.
     """
     i, T = s.n_c + c, s.n_j + s.n_c + c
-    least = still(s.rows, T) if s.mode[c] == STICKS or s.mode[c] == LEANS else s.terms[i]
+    least = still(s.rows, T) if s.mode[c] in (STICKS, LEANS) else s.terms[i]
     if abs(s.velocity[T]) <= least:
         s.terms[i] = max(s.terms[i], abs(s.velocity[T]))
         s.velocity[T] = 0.0
@@ -240,10 +238,9 @@ def find_free(s: Rubbing) -> None:
 
 def is_free(s: Rubbing, c: int) -> bool:
     """Whether contact c has no sliding velocity, between or after the impacts of an instant."""
-    if s.n_t == 0:
-        return True
-    least = s.terms[s.n_c + c] if s.rounds > 0 else still(s.rows, s.n_j + s.n_c + c)
-    return abs(sliding(s.rows, c)) <= least
+    if s.rounds == 0 or s.n_t == 0:
+        return has_stopped(s.rows, c)
+    return abs(sliding(s.rows, c)) <= s.terms[s.n_c + c]
 
 
 def forget_terms(s: Rubbing) -> None:

@@ -33,7 +33,7 @@ from lcpstep.events.contacts.guards import begin_guards
 from lcpstep.events.contacts.impact import forget_terms, jump
 from lcpstep.events.contacts.jamming import jam
 from lcpstep.events.contacts.loose import find_loose
-from lcpstep.events.contacts.modes import adopt_modes, decide, obey, undecided
+from lcpstep.events.contacts.modes import adopt_modes, decide, keep_mode, obey, undecided
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
 from lcpstep.events.contacts.switching import look_at_guards, switch
@@ -206,8 +206,8 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
             return code
         open_question = undecided(s)
         if changes_any(s):
-            for c in range(s.n_c):  # the modes at hand in the place of those decided
-                s.new_mode[c], s.new_direction[c], s.new_loaded[c] = s.mode[c], s.direction[c], s.loaded[c]
+            for c in range(s.n_c):
+                keep_mode(s, c)
             break
         if not open_question:
             break

@@ -159,6 +159,11 @@ def read_modes(s: Rubbing, n_a: int, n_f: int) -> None:
             s.new_direction[c] = 1.0 if rate >= 0.0 else -1.0
 
 
+def keep_mode(s: Rubbing, c: int) -> None:
+    """Keep the mode at hand of contact c in the place of that decided."""
+    s.new_mode[c], s.new_direction[c], s.new_loaded[c] = s.mode[c], s.direction[c], s.loaded[c]
+
+
 def undecided(s: Rubbing) -> bool:
     """Whether the forces leave the mode of a contact open, after `decide`: those that come decide about it.
 

@@ -13,23 +13,19 @@ from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.equations import measure, renew_friction
 from lcpstep.events.contacts.modes import decide
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.accelerations import accelerate_on_joints
+from lcpstep.events.rows.accelerations import accelerate, accelerate_on_joints
 from lcpstep.events.rows.contacts import gap_tolerance, hold_modes
 from lcpstep.events.rows.equations import acceleration_of
-from lcpstep.events.rows.held import constrain, hold_joints
+from lcpstep.events.rows.held import hold_joints
 from lcpstep.events.rows.on_joints import is_led
 from lcpstep.kernels.status import DONE
-from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import abs, min
-
-OFF = 1.0  # of the tolerance of a gap: what steps over a turn may leave of it
 
 
 def part_before(s: Rubbing) -> None:
     """Mark the contacts that have opened so shortly before an impact that their speed is still but rounding."""
     hold_modes(s.rows)
-    copy(s.a, s.a_free, s.n_q)
-    constrain(s.rows, s.a, s.bias)
+    accelerate(s.rows)
     for c in range(s.n_c):
         i = s.n_j + c
         rises = s.mode[c] == OPEN and s.touches[c] == 1 and abs(s.velocity[i]) <= s.terms[c]
@@ -51,7 +47,7 @@ def pass_by(s: Rubbing) -> None:
             continue
         accelerate_on_joints(s.rows)
         alpha = acceleration_of(s.rows, i, s.a)
-        if alpha > 0.0 and u * u <= 2.0 * alpha * OFF * gap_tolerance(s.rows, c):
+        if alpha > 0.0 and u * u <= 2.0 * alpha * gap_tolerance(s.rows, c):
             s.terms[c], s.parting[c] = -u, 1
 
 

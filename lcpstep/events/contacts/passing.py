@@ -9,11 +9,11 @@ import cython
 from lcpstep.events.contacts.held import right_hand_side
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import add_impulse
-from lcpstep.events.rows.keep import keep
+from lcpstep.events.rows.keep import keep_awaited
 from lcpstep.events.rows.projection import project
 from lcpstep.kernels.dop853 import ALL, STAGES
 from lcpstep.kernels.vectors import clear, copy
-from lcpstep.pointers import abs
+from lcpstep.pointers import abs, after
 
 
 def take_over(s: Rubbing, t: float, tau: float) -> None:
@@ -37,18 +37,12 @@ def take_over(s: Rubbing, t: float, tau: float) -> None:
 
 def keep_wanted(s: Rubbing, tau: float) -> None:
     """Keep the state asked for next, tau from now: on the rows held, which dense output leaves by its own error."""
-    t = s.clock.record.awaited()
+    copy(s.seen, s.y, 2 * s.n_q)
     if tau > 0.0:
         s.at(tau / s.length, s.seen)
-        copy(s.dy, s.y, 2 * s.n_q)
-        copy(s.y, s.seen, 2 * s.n_q)
         if s.rows.n_held > 0:
-            project(s.rows, t, s.q, s.v)
-        keep(s.rows, t, s.y)
-        copy(s.y, s.dy, 2 * s.n_q)
-    else:
-        keep(s.rows, t, s.y)
-    s.clock.record.next_time += 1
+            project(s.rows, s.clock.record.awaited(), s.seen, after(s.seen, s.n_q))
+    keep_awaited(s.rows, s.seen)
 
 
 def press_between(s: Rubbing, a: float, b: float) -> None:

@@ -73,10 +73,7 @@ def answers(c: ContactProblem, n: int, pressed: int) -> bool:
     solve(c.W, c.carrier, c.b, n)
     most = largest(c.b, 0.0, n)
     for i in range(n):
-        alpha, size = c.rate[i], abs(c.rate[i])
-        for j in range(n):
-            alpha += c.mobility[i * n + j] * c.b[j]
-            size += abs(c.mobility[i * n + j] * c.b[j])
+        alpha, size = motion_of(c, c.b, i, n)
         if (pressed >> i & 1) == 1 and c.b[i] <= CLEARLY * most:
             return False
         if (pressed >> i & 1) == 0 and alpha <= CLEARLY * size:

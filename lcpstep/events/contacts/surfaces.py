@@ -6,12 +6,13 @@ import cython
 
 from lcpstep.events.codes import OPEN
 from lcpstep.events.contacts.equations import measure, share_left
+from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
-from lcpstep.events.rows.held import constrain, contradiction, parted
+from lcpstep.events.rows.held import contradiction, parted
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.dynamics import gap_rates, gaps
-from lcpstep.kernels.vectors import clear, copy, largest, product
+from lcpstep.kernels.vectors import clear, largest, product
 from lcpstep.pointers import Doubles, abs, after, max, min
 
 FREE = 1e-6  # relative: what a row can move of itself while others are held, or it depends on them
@@ -48,10 +49,7 @@ def lift(s: Rubbing, c: int) -> bool:
     if s.rate[i] != 0.0 or u >= 0.0 or abs(g) > -s.clock.untold(s.length) * u:
         way, speed, straight = after(s.MR, i * n), s.W[i * s.n_r + i], s.model.flat
         if s.rows.n_held > 0:
-            copy(s.dv, way, n)
-            clear(s.shifted_rate, s.n_r)
-            constrain(s.rows, s.dv, s.shifted_rate)
-            u = product(s.R, s.dv, i, n)
+            u = gives(s, i)
             if abs(u) > FREE * speed:
                 way, speed = s.dv, u
     s.gap[i] = 0.0
@@ -108,16 +106,12 @@ def come_to_rest(s: Rubbing) -> bool:
     return True
 
 
-def touching(s: Rubbing, c: int) -> float:
+def touching(s: Rubbing, c: int, share: float) -> float:
     """The gap below which contact c is closed when another one is: rounding, and a little of the tolerance.
 
     Late times tell no better which of two gaps that close together, as at two corners of a block, was first.
+    share : of the tolerance that counts, see `share_left`
     """
-    return nearly(s, c, share_left(s))
-
-
-def nearly(s: Rubbing, c: int, share: float) -> float:
-    """The same by what is left of the motion, as a share of the tolerance."""
     late = LATE * RESOLUTION * abs(s.clock.t0) * abs(s.velocity[s.n_j + c])
     return s.rows.rounding_of_gap(c) + TOGETHER * share * gap_tolerance(s.rows, c) + late
 
@@ -140,7 +134,7 @@ def find_touching(s: Rubbing) -> None:
     """Mark the open contacts whose gap is closed to rounding or to the tolerance."""
     share = share_left(s)
     for c in range(s.n_c):
-        s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= nearly(s, c, share) else 0
+        s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= touching(s, c, share) else 0
 
 
 def find_coming(s: Rubbing, c: int) -> None:
@@ -150,7 +144,7 @@ def find_coming(s: Rubbing, c: int) -> None:
     a hop's end as little of the hop is not known.
     """
     u, share = s.velocity[s.n_j + c], share_left(s)
-    moment = min(nearly(s, c, share) / -u, TOGETHER * (s.clock.t0 - s.rows.struck[c])) if u < 0.0 else 0.0
+    moment = min(touching(s, c, share) / -u, TOGETHER * (s.clock.t0 - s.rows.struck[c])) if u < 0.0 else 0.0
     for d in range(s.n_c):
         way = min(-s.velocity[s.n_j + d] * moment, share * gap_tolerance(s.rows, d))
         if s.gap[s.n_j + d] <= way:

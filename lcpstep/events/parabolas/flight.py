@@ -11,7 +11,7 @@ import cython
 from lcpstep.events.codes import JUMP, OPEN
 from lcpstep.events.parabolas.state import Mechanism
 from lcpstep.events.rows.held import push_by_change
-from lcpstep.events.rows.keep import keep
+from lcpstep.events.rows.keep import keep, keep_awaited
 from lcpstep.kernels.quadratic import first_zero
 from lcpstep.kernels.vectors import copy, largest, product
 from lcpstep.pointers import abs, max, min
@@ -37,8 +37,7 @@ def fly(s: Mechanism) -> None:
         press(s, wanted - pressed)
         pressed = wanted
         state_at(s, wanted)
-        keep(s, s.record.awaited(), s.q)
-        s.record.next_time += 1
+        keep_awaited(s, s.q)
     press(s, tau - pressed)
     state_at(s, tau)
     s.record.store(s.a, tau)

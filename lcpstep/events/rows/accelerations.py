@@ -14,15 +14,19 @@ from lcpstep.events.rows.held import constrain, hold_joints
 from lcpstep.kernels.vectors import copy
 
 
-def accelerate_on_joints(s: Contacts) -> None:
-    """The acceleration with the joints alone held, into `a`; everything must be measured."""
+def accelerate(s: Contacts) -> None:
+    """The acceleration with the rows held, into `a`; everything must be measured."""
     copy(s.a, s.a_free, s.n_q)
-    hold_joints(s)
     constrain(s, s.a, s.bias)
+
+
+def accelerate_on_joints(s: Contacts) -> None:
+    """The same with the joints alone held."""
+    hold_joints(s)
+    accelerate(s)
 
 
 def accelerate_as_held(s: Contacts) -> None:
-    """The acceleration with the rows held, into `a`, and multipliers by row; everything must be measured."""
-    copy(s.a, s.a_free, s.n_q)
-    constrain(s, s.a, s.bias)
+    """The acceleration with the rows held, and their forces by row, into `multiplier`."""
+    accelerate(s)
     list_multipliers(s)

@@ -113,8 +113,7 @@ class Contacts(Rows):
 
     def mode_closed(self, c: int) -> int:
         """The mode in which contact c would be closed: it slides on, if it does."""
-        slides = not rubs(self, c) or abs(sliding(self, c)) > still(self, self.n_j + self.n_c + c)
-        return SLIDES if slides else STICKS
+        return STICKS if rubs(self, c) and has_stopped(self, c) else SLIDES
 
     def push(self, i: int, p: float) -> None:
         """Apply the impulse p on row i, and count it.
@@ -198,6 +197,11 @@ def speed_tolerance(s: Contacts, i: int) -> float:
 def still(s: Contacts, i: int) -> float:
     """The velocity of row i below which it is zero."""
     return NOISE * size_of(s, i, s.rate[i], s.v) + STILL * speed_tolerance(s, i)
+
+
+def has_stopped(s: Contacts, c: int) -> bool:
+    """Whether contact c has no sliding velocity, or none that can be told from zero."""
+    return s.n_t == 0 or abs(sliding(s, c)) <= still(s, s.n_j + s.n_c + c)
 
 
 def rubs(s: Contacts, c: int) -> bool:

@@ -53,33 +53,43 @@ def leave_for_later(s: Contacts, n: int, touched: bool) -> int:
     ids, taken = s.problem.ids, s.tried
     for c in range(s.n_c):
         taken[c] = UNTOLD
-    while True:
-        fastest = -1
-        for a in range(n):
-            c = ids[a]
-            faster = fastest < 0 or s.velocity[s.n_j + c] < s.velocity[s.n_j + fastest]
-            if taken[c] == UNTOLD and strikes(s, c) and faster:
-                fastest = c
-        if fastest < 0:
-            break
-        taken[fastest] = NEXT
-        waits = False
-        more = True
-        while more:
-            more = False
-            for a in range(n):
-                for b in range(n):
-                    c, d = ids[a], ids[b]
-                    linked = taken[c] == NEXT and s.D[(s.n_j + c) * s.n_r + s.n_j + d] != 0.0
-                    if linked and taken[d] == UNTOLD and not exchange(s, c, d, touched):
-                        taken[d], more = NEXT, True
-                    waits = waits or (linked and taken[d] == HERE)
+    first = fastest(s, n)
+    while first >= 0:
+        taken[first] = NEXT
+        when = LATER if link(s, n, touched) else HERE
         for a in range(n):
             if taken[ids[a]] == NEXT:
-                taken[ids[a]] = LATER if waits else HERE
+                taken[ids[a]] = when
+        first = fastest(s, n)
     left = 0
     for a in range(n):
         if taken[ids[a]] != LATER:
             ids[left] = ids[a]
             left += 1
     return left
+
+
+def fastest(s: Contacts, n: int) -> int:
+    """The member that strikes fastest of those of which it is not told yet when, or -1."""
+    found = -1
+    for a in range(n):
+        c = s.problem.ids[a]
+        faster = found < 0 or s.velocity[s.n_j + c] < s.velocity[s.n_j + found]
+        if s.tried[c] == UNTOLD and strikes(s, c) and faster:
+            found = c
+    return found
+
+
+def link(s: Contacts, n: int, touched: bool) -> bool:
+    """Take along (NEXT) what is struck together with members taken; whether they wait for some that strike HERE."""
+    ids, taken, waits, more = s.problem.ids, s.tried, False, True
+    while more:
+        more = False
+        for a in range(n):
+            for b in range(n):
+                c, d = ids[a], ids[b]
+                linked = taken[c] == NEXT and s.D[(s.n_j + c) * s.n_r + s.n_j + d] != 0.0
+                if linked and taken[d] == UNTOLD and not exchange(s, c, d, touched):
+                    taken[d], more = NEXT, True
+                waits = waits or (linked and taken[d] == HERE)
+    return waits

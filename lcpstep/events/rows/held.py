@@ -13,14 +13,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.rows.equations import (
-    acceleration_of,
-    other,
-    renew_rates,
-    respond_held,
-    size_of,
-    size_of_acceleration,
-)
+from lcpstep.events.rows.equations import acceleration_of, other, size_of, size_of_acceleration
 from lcpstep.events.rows.on_joints import leave_joints, leave_joints_again, put_on_joints
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import inverse_mass
@@ -138,15 +131,6 @@ def hold_again(s: Rows) -> int:
             break
     s.n_held = count
     return dependent
-
-
-def renew_held(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
-    """Rows, rates and factors of the rows held at a state whose masses are known; False where they are dependent."""
-    renew_rates(s, t, q, v)
-    if s.known:
-        return True
-    respond_held(s)
-    return hold_again(s) < 0
 
 
 def solve_held(s: Rows, x: Doubles) -> None:

@@ -29,6 +29,12 @@ def keep(s: Contacts, t: float, y: Doubles) -> None:
     s.record.keep(t, 0.0, y, after(y, s.n_q), s.impulse)
 
 
+def keep_awaited(s: Contacts, y: Doubles) -> None:
+    """The same of the state that is asked for next."""
+    keep(s, s.record.awaited(), y)
+    s.record.next_time += 1
+
+
 def pay(s: Contacts, c: int) -> None:
     """Pay what the end of chattering has taken on account, once the impulses of a row lie in the cone with it.
 
@@ -80,12 +86,7 @@ def tell(s: Contacts, t: float) -> bool:
             s.log(t, c, STICK_TANGENT, slip, 0.0, 0.0)
         elif was == STICKS and now == SLIDES:
             s.log(t, c, SLIP, 0.0, slip, 0.0)
-        elif was == SLIDES and now == SLIDES and turned(s, c):
+        elif was == SLIDES and now == SLIDES and rubs(s, c) and s.direction[c] != s.was_direction[c]:
             s.log(t, c, REVERSE, slip, slip, 0.0)
         s.was_mode[c], s.was_direction[c] = now, s.direction[c]
     return some
-
-
-def turned(s: Contacts, c: int) -> bool:
-    """Whether contact c slides the other way than when last told."""
-    return rubs(s, c) and s.direction[c] != s.was_direction[c]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.rows.equations import least_gap, list_gaps
-from lcpstep.events.rows.held import measure_missing, push_by_change, renew_held
+from lcpstep.events.rows.equations import least_gap, list_gaps, renew_rates, respond_held
+from lcpstep.events.rows.held import hold_again, measure_missing, push_by_change
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import factor_mass
 from lcpstep.kernels.clock import LEAST
@@ -89,4 +89,11 @@ def none_open(s: Rows, q: Doubles, tolerances: float) -> bool:
 
 def take_rows(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
     """Rows, rates and factors of the rows held at this state; False where these have become dependent."""
-    return (s.known or factor_mass(s.model, s.inside(t), q, v, s.M)) and renew_held(s, t, q, v)
+    if s.known:
+        renew_rates(s, t, q, v)
+        return True
+    if not factor_mass(s.model, s.inside(t), q, v, s.M):
+        return False
+    renew_rates(s, t, q, v)
+    respond_held(s)
+    return hold_again(s) < 0

@@ -24,7 +24,7 @@ from lcpstep.kernels.vectors import copy, distance, largest
 from lcpstep.pointers import abs, after, inf, max, min
 from lcpstep.stepping.rubbing.found import curve, measure_base, note_arrival, note_middle
 from lcpstep.stepping.rubbing.let_go import is_motion
-from lcpstep.stepping.rubbing.strides import Strides, push_end_back
+from lcpstep.stepping.rubbing.strides import Strides, go_on_with, push_end_back
 
 ROUNDING = 8 * RESOLUTION  # relative differences that are no errors
 SAFETY, LEAST, MOST = 0.9, 0.2, 2.0  # of the change of step
@@ -116,9 +116,7 @@ def halves(s: Strides, t: float, h: float) -> bool:
     copy(s.stored_forces, s.leaving, s.n_r)
     push_end_back(s, after(s.y_new, s.n_q))
     copy(s.y, s.y_new, n)
-    copy(s.K, s.arrival, n)
-    copy(s.K, after(s.y, s.n_q), s.n_q)
-    copy(s.leaving, s.arriving, s.n_r)
+    go_on_with(s)
     good = s.step(between, second)
     if good:
         note_middle(s, between, second, s.late_value)

@@ -10,7 +10,7 @@ from lcpstep.events.contacts.balance import lets_go
 from lcpstep.events.contacts.equations import measure, measure_gaps
 from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.loose import first_stray
-from lcpstep.events.contacts.modes import decide, undecided
+from lcpstep.events.contacts.modes import decide, keep_mode, undecided
 from lcpstep.events.contacts.moments import of_sliding
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.contacts.step import mark_resting
@@ -19,7 +19,7 @@ from lcpstep.events.rows.chatter import moves
 from lcpstep.events.rows.contacts import add_impulse, hold_modes, list_by_row, still
 from lcpstep.events.rows.equations import respond_to
 from lcpstep.events.rows.jumps import breaks
-from lcpstep.events.rows.keep import keep, keep_event
+from lcpstep.events.rows.keep import keep, keep_awaited, keep_event
 from lcpstep.events.rows.projection import project
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, PROJECTION_FAILED
@@ -37,7 +37,7 @@ from lcpstep.stepping.rubbing.found import (
     note_base,
 )
 from lcpstep.stepping.rubbing.paced import pace
-from lcpstep.stepping.rubbing.strides import Strides, push_end_back
+from lcpstep.stepping.rubbing.strides import Strides, go_on_with, push_end_back
 
 # Of a step: where the forces after a release, or a slip, are looked at, and how much further each time that nothing
 # is seen of it there
@@ -180,7 +180,7 @@ def leave_to_guards(s: Strides, c: int) -> None:
     """
     for d in range(s.n_c):
         if d != c and lets_go(s, d) and not moves(s.rows, c, d):
-            s.new_mode[d], s.new_direction[d], s.new_loaded[d] = s.mode[d], s.direction[d], s.loaded[d]
+            keep_mode(s, d)
 
 
 def take_over(s: Strides, t: float, tau: float) -> None:
@@ -195,8 +195,7 @@ def take_over(s: Strides, t: float, tau: float) -> None:
         copy(s.y, s.y_new, s.n)
     s.clock.start_at(t)
     while s.clock.record.wants(t, t >= s.clock.t_end):  # the end of the span
-        keep(s.rows, s.clock.record.awaited(), s.y)
-        s.clock.record.next_time += 1
+        keep_awaited(s.rows, s.y)
 
 
 def put_end_back(s: Strides) -> None:
@@ -228,8 +227,7 @@ def keep_between(s: Strides, t: float, tau: float) -> float:
                 put_between(s, s.clock.record.awaited())
                 s.based = False
             pressed = place
-        keep(s.rows, s.clock.record.awaited(), s.seen)
-        s.clock.record.next_time += 1
+        keep_awaited(s.rows, s.seen)
     s.clock.record.store(s.F, s.length)
     return pressed
 
@@ -273,9 +271,7 @@ def arrive_with(s: Strides, t: float) -> None:
     """
     s.going = t < s.clock.high
     if s.going:
-        copy(s.K, s.arrival, s.n)
-        copy(s.K, after(s.y, s.n_q), s.n_q)
-        copy(s.leaving, s.arriving, s.n_r)
+        go_on_with(s)
         copy(s.begin_value, s.end_value, GUARDS * s.n_c)
         copy(s.begin_slope, s.end_slope, GUARDS * s.n_c)
         copy(s.begin_bend, s.end_bend, s.n_c)

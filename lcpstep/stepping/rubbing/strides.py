@@ -196,6 +196,13 @@ def push_end_back(s: Strides, v: Doubles) -> None:
     push_onto_rows(s.rows, v)
 
 
+def go_on_with(s: Strides) -> None:
+    """Rates and forces at the end of the step just made are those at the base, where its state lies by now."""
+    copy(s.K, s.arrival, s.n)
+    copy(s.K, s.v, s.n_q)
+    copy(s.leaving, s.arriving, s.n_r)
+
+
 def stays_on_rows(s: Strides, t: float) -> bool:
     """Put the position at the end of a step onto the rows held; False where none is found there (`astray`)."""
     s.astray = -1
