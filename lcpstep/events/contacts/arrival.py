@@ -4,17 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.codes import (
-    EDGE,
-    JUMP,
-    LEANS,
-    NO_SURFACE,
-    OBEY,
-    OPEN,
-    SETTLE,
-    SLIDES,
-    STICKS,
-)
+from lcpstep.events.codes import EDGE, JUMP, LEANS, NO_SURFACE, OBEY, OPEN, SETTLE, SLIDES, STICKS
 from lcpstep.events.contacts.corners import land_on_corner
 from lcpstep.events.contacts.equations import measure, share_left
 from lcpstep.events.contacts.impact import forget_terms

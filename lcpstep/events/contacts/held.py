@@ -12,21 +12,9 @@ import cython
 
 from lcpstep.events.contacts.equations import measure_friction
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import (
-    list_multipliers,
-    pull,
-)
-from lcpstep.events.rows.equations import (
-    free_motion,
-    measure_biases,
-    renew_biases,
-    renew_rates,
-    respond_held,
-)
-from lcpstep.events.rows.held import (
-    constrain,
-    hold_again,
-)
+from lcpstep.events.rows.contacts import list_multipliers, pull
+from lcpstep.events.rows.equations import free_motion, measure_biases, renew_biases, renew_rates, respond_held
+from lcpstep.events.rows.held import constrain, hold_again
 from lcpstep.kernels.acceleration import inverse_mass
 from lcpstep.kernels.dynamics import total_force
 from lcpstep.kernels.vectors import add, clear, copy

@@ -13,14 +13,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.codes import (
-    EDGE,
-    LEANS,
-    NO_FORCES,
-    OPEN,
-    SLIDES,
-    STICKS,
-)
+from lcpstep.events.codes import EDGE, LEANS, NO_FORCES, OPEN, SLIDES, STICKS
 from lcpstep.events.contacts.bracing import braced
 from lcpstep.events.contacts.equations import let_stick
 from lcpstep.events.contacts.leaning import stand, stand_alone

@@ -4,13 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.codes import (
-    LEANS,
-    NO_FORCES,
-    OPEN,
-    STICKS,
-    SWITCH,
-)
+from lcpstep.events.codes import LEANS, NO_FORCES, OPEN, STICKS, SWITCH
 from lcpstep.events.contacts.arrival import arrive, find_standing, of_force, tells
 from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
