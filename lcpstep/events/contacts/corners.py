@@ -43,7 +43,7 @@ def land_on_corner(s: Rubbing) -> int:
 def strike_beyond(s: Rubbing) -> int:
     """Enter the next interval, where the contacts strike that are closed or have come with the velocity `before`."""
     s.clock.find_corners(s.clock.t0)
-    go_beyond(s.rows, s.y, s.v)
+    go_beyond(s.rows, s.y)
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
     forget_terms(s)

@@ -9,14 +9,14 @@ from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import measure_velocities, speed_tolerance
 from lcpstep.events.rows.equations import (
     free_motion,
-    renew_biases,
-    renew_rates,
+    list_gaps,
+    measure_biases,
+    measure_rates,
     respond,
     size_of,
     velocity_of,
 )
 from lcpstep.kernels.clock import NOISE
-from lcpstep.kernels.dynamics import gaps
 from lcpstep.kernels.vectors import copy, largest
 from lcpstep.pointers import Doubles, abs, after, max, min
 
@@ -26,8 +26,8 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
 
     False where a coefficient of friction is none.
     """
-    renew_rates(s.rows, t, y, after(y, s.n_q))
-    renew_biases(s.rows, t, y, after(y, s.n_q))
+    measure_rates(s.rows, t, y)
+    measure_biases(s.rows, t, y)
     respond(s.rows)
     return measure_friction(s, t, y)
 
@@ -55,24 +55,16 @@ def renew_friction(s: Rubbing, t: float) -> bool:
 
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:
     """Everything at a state: free acceleration, rows, gaps and velocities; False where something is not finite."""
-    if not free_motion(s.rows, t, y, after(y, s.n_q), s.a_free):
+    if not free_motion(s.rows, t, y, s.a_free):
         return False
     if not measure_rows(s, t, y):
         return False
-    measure_gaps(s, t, y)
+    list_gaps(s.rows, t, y, s.gap)
     measure_velocities(s.rows, after(y, s.n_q))
     total = 0.0
     for i in range(s.n_r):
         total += s.velocity[i] + s.bias[i] + s.gap[i]
     return total - total == 0.0
-
-
-def measure_gaps(s: Rubbing, t: float, y: Doubles) -> None:
-    """Gaps of joints and contacts."""
-    q, v = y, after(y, s.n_q)
-    if s.n_j > 0:
-        gaps(s.rows.joints, t, q, v, s.gap)
-    gaps(s.model, t, q, v, after(s.gap, s.n_j))
 
 
 def share_left(s: Rubbing) -> float:

@@ -11,20 +11,14 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
-from lcpstep.events.contacts.equations import (
-    force_noise,
-    measure_friction,
-    measure_gaps,
-    most_friction,
-    share_left,
-)
+from lcpstep.events.contacts.equations import force_noise, measure_friction, most_friction, share_left
 from lcpstep.events.contacts.held import right_hand_side
 from lcpstep.events.contacts.hops import begin_hops, first_landing
 from lcpstep.events.contacts.loose import forget, notice
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.hybrid.roots import DEGREE, NONE, SAMPLES, convert, first_rise, taylor
 from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
-from lcpstep.events.rows.equations import renew_rates, size_of, velocity_of
+from lcpstep.events.rows.equations import list_gaps, measure_rates, size_of, velocity_of
 from lcpstep.events.rows.held import is_held
 from lcpstep.events.rows.on_joints import is_led
 from lcpstep.kernels.clock import NOISE
@@ -47,7 +41,7 @@ def look(s: Rubbing, t: float, y: Doubles) -> bool:
 
 def look_at_stage(s: Rubbing, stage: int, t: float, y: Doubles) -> bool:
     """The same at a stage of the step at hand, where the forces are known."""
-    renew_rates(s.rows, t, y, after(y, s.n_q))
+    measure_rates(s.rows, t, y)
     copy(s.multiplier, after(s.loads, stage * s.n_r), s.n_r)
     return measure_friction(s, t, y) and read(s, t, y)
 
@@ -55,7 +49,7 @@ def look_at_stage(s: Rubbing, stage: int, t: float, y: Doubles) -> bool:
 def read_with_rates(s: Rubbing, t: float, y: Doubles) -> bool:
     """The same where the forces of the state are known, and with them the rates, if any row is held."""
     if s.rows.n_held == 0:
-        renew_rates(s.rows, t, y, after(y, s.n_q))
+        measure_rates(s.rows, t, y)
     return read(s, t, y)
 
 
@@ -65,7 +59,7 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
     for c in range(s.n_c):
         opened = opened or s.mode[c] == OPEN
     if opened:
-        measure_gaps(s, t, y)
+        list_gaps(s.rows, t, y, s.gap)
     for c in range(s.n_c):
         i, k = s.n_j + c, GUARDS * c
         s.value[k] = s.value[k + 1] = s.value[k + 2] = OFF

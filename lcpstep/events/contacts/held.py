@@ -2,7 +2,7 @@
 
     C_c = N_c - s mu T_c where contact c slides (sign s)
 
-The rows are held in turn: joints, what sticks, normals that slide (those that carry a force first).
+Which rows these are, and in which turn, see `events.rows.contacts.hold_modes`.
 Source: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (Wiley 1996), chapters 5 and 6.
 """
 
@@ -13,7 +13,7 @@ import cython
 from lcpstep.events.contacts.equations import measure_friction
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import list_multipliers, pull
-from lcpstep.events.rows.equations import free_motion, measure_biases, renew_biases, renew_rates, respond_held
+from lcpstep.events.rows.equations import free_motion, measure_biases, measure_rates, respond_held
 from lcpstep.events.rows.held import constrain, hold_again
 from lcpstep.kernels.acceleration import inverse_mass
 from lcpstep.kernels.dynamics import total_force
@@ -40,11 +40,11 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     if s.constant:
         accelerate(s, t, y, a)
         return a[0] - a[0] == 0.0
-    if not free_motion(s.rows, t, y, after(y, s.n_q), a):
+    if not free_motion(s.rows, t, y, a):
         return False
     if s.rows.n_held > 0:
-        renew_rates(s.rows, t, y, after(y, n))
-        renew_biases(s.rows, t, y, after(y, n))
+        measure_rates(s.rows, t, y)
+        measure_biases(s.rows, t, y)
         if not measure_friction(s, t, y) or not hold_modes_again(s):
             return False
         constrain(s.rows, a, s.bias)
@@ -57,7 +57,7 @@ def know_rows(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     if not right_hand_side(s, t, y, dy):
         return False
     if s.rows.n_held == 0:
-        renew_rates(s.rows, t, y, after(y, s.n_q))
+        measure_rates(s.rows, t, y)
     know_biases(s, t, y)
     return True
 
@@ -65,7 +65,7 @@ def know_rows(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
 def know_biases(s: Rubbing, t: float, y: Doubles) -> None:
     """Biases of all rows where rates and forces are known; if any row is held these have needed them already."""
     if s.rows.n_held == 0:
-        renew_biases(s.rows, t, y, after(y, s.n_q))
+        measure_biases(s.rows, t, y)
 
 
 def accelerate(s: Rubbing, t: float, y: Doubles, a: Doubles) -> None:
@@ -78,8 +78,8 @@ def accelerate(s: Rubbing, t: float, y: Doubles, a: Doubles) -> None:
     for j in range(n):
         add(s.effect, s.force[j], after(s.effects, j * m), m)
     if s.rows.moving and s.rows.n_held > 0:
-        renew_rates(s.rows, t, y, after(y, s.n_q))
-        measure_biases(s.rows, t, y, after(y, s.n_q))
+        measure_rates(s.rows, t, y)
+        measure_biases(s.rows, t, y)
         for i in range(s.n_r):
             add(s.effect, s.bias[i], after(s.effects, (n + i) * m), m)
     copy(a, s.effect, n)

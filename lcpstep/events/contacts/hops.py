@@ -16,12 +16,11 @@ from math import pow, sqrt
 import cython
 
 from lcpstep.events.codes import OPEN
-from lcpstep.events.contacts.equations import measure_gaps
 from lcpstep.events.contacts.held import know_biases, know_rows
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.hybrid.roots import NONE
 from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
-from lcpstep.events.rows.equations import acceleration_of, size_of, velocity_of
+from lcpstep.events.rows.equations import acceleration_of, list_gaps, size_of, velocity_of
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.quadratic import first_zero
 from lcpstep.kernels.vectors import largest
@@ -137,7 +136,7 @@ def ends_so(s: Rubbing, c: int, tau: float) -> bool:
     It is another one where the obstacle has an edge or a valley, at which the gap velocity jumps.
     """
     s.at(tau / s.length, s.seen)
-    measure_gaps(s, s.clock.t0 + tau, s.seen)
+    list_gaps(s.rows, s.clock.t0 + tau, s.seen, s.gap)
     strayed = s.clock.untold(s.length) * abs(s.rate[s.n_j + c])
     errors = max(s.rows.rounding_of_gap(c) + strayed, gap_tolerance(s.rows, c))
     return abs(s.gap[s.n_j + c]) <= UNLIKE * tau * abs(s.rise[c]) + errors

@@ -14,7 +14,7 @@ from lcpstep.events.contacts.equations import force_noise, size_of_loads
 from lcpstep.events.contacts.held import know_biases
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.rows.contacts import rubs
-from lcpstep.events.rows.equations import acceleration_of, renew_biases, size_of_acceleration
+from lcpstep.events.rows.equations import acceleration_of, measure_biases, size_of_acceleration
 from lcpstep.events.rows.held import DRIFT, is_held
 from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.dop853 import STAGES
@@ -54,7 +54,7 @@ def notice(s: Rubbing, place: float, t: float) -> None:
     a = after(s.dy, s.n_q)
     if place == 1.0:
         a = after(s.K, STAGES * s.n + s.n_q)
-        renew_biases(s.rows, t, s.y_new, after(s.y_new, s.n_q))
+        measure_biases(s.rows, t, s.y_new)
     else:
         know_biases(s, t, s.seen)
     if straying(s, a, DRIFT) < 0:

@@ -19,6 +19,7 @@ from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import abs, after, min
 
 REFINEMENTS = 6  # of an event's time by repeated steps
+FAR = 1e-3  # of a step: a guard that is off by so much is no polynomial, and secants lead astray
 NEAR = 1e-5  # of a step: a way this short needs none, the trapezoidal rule leaves nothing of it but rounding
 
 
@@ -34,7 +35,7 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
         if not look_after(s, tau):
             return UNKNOWN
         change = missing(s, g)
-        if abs(change) <= NEAR * tau or abs(change) > 1e-3 * h or k == REFINEMENTS:
+        if abs(change) <= NEAR * tau or abs(change) > FAR * h or k == REFINEMENTS:
             break
         if tau + change <= 0.0:  # of so short a way the polynomial knows more than secants
             break

@@ -13,7 +13,7 @@ from lcpstep.events.rows.keep import keep_awaited
 from lcpstep.events.rows.projection import project
 from lcpstep.kernels.dop853 import ALL, STAGES
 from lcpstep.kernels.vectors import clear, copy
-from lcpstep.pointers import abs, after
+from lcpstep.pointers import abs
 
 
 def take_over(s: Rubbing, t: float, tau: float) -> None:
@@ -32,7 +32,7 @@ def take_over(s: Rubbing, t: float, tau: float) -> None:
         copy(s.y, s.y_new, 2 * s.n_q)
     s.clock.start_at(t)
     if tau > 0.0 and s.rows.n_held > 0:
-        project(s.rows, t, s.q, s.v)
+        project(s.rows, t, s.y)
 
 
 def keep_wanted(s: Rubbing, tau: float) -> None:
@@ -41,7 +41,7 @@ def keep_wanted(s: Rubbing, tau: float) -> None:
     if tau > 0.0:
         s.at(tau / s.length, s.seen)
         if s.rows.n_held > 0:
-            project(s.rows, s.clock.record.awaited(), s.seen, after(s.seen, s.n_q))
+            project(s.rows, s.clock.record.awaited(), s.seen)
     keep_awaited(s.rows, s.seen)
 
 

@@ -23,7 +23,6 @@ from lcpstep.events.rows.contacts import hold_modes, pull
 from lcpstep.events.rows.equations import free_motion
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.kernels.vectors import copy
-from lcpstep.pointers import after
 
 
 @cython.ccall
@@ -58,7 +57,7 @@ def hold(s: Rubbing, t: float, x: Any, mode: Any, direction: Any) -> bool:
         s.mode[c], s.direction[c] = int(mode[c]), direction[c]
         s.loaded[c] = 1 if s.mode[c] != OPEN else 0
     y = doubles(x)
-    if not free_motion(s.rows, t, y, after(y, s.n_q), s.a_free):
+    if not free_motion(s.rows, t, y, s.a_free):
         return False
     return measure_rows(s, t, y) and hold_modes(s.rows)
 

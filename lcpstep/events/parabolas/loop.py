@@ -73,11 +73,11 @@ def begin(s: Mechanism) -> bool:
     Rows and free acceleration are known for good: gaps are linear, and neither obstacles nor joints move.
     """
     s.find_corners(s.t0)
-    if not free_motion(s, s.t0, s.q, s.v, s.a_free):
+    if not free_motion(s, s.t0, s.q, s.a_free):
         return False
     if s.n_c > 0:
         gaps(s.model, s.t0, s.q, s.v, after(s.gap, s.n_j))
-    measure_rates(s, s.t0, s.q, s.v)
+    measure_rates(s, s.t0, s.q)
     respond(s)
     for i in range(s.n_j, s.n_r):
         s.velocity[i] = product(s.R, s.v, i, s.n_q)

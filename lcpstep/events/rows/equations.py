@@ -1,6 +1,7 @@
 """Joints, contacts and tangents at one state, as kernels: Jacobians, rates, biases and the Delassus matrix.
 
-The velocity of row i is R_i v + rate_i, its acceleration R_i a + bias_i; D = R M^-1 R^T is the Delassus matrix.
+A state is y = (q, v). The velocity of row i is R_i v + rate_i, its acceleration R_i a + bias_i; D = R M^-1 R^T is the
+Delassus matrix.
 Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), chapter 3.
 """
 
@@ -24,39 +25,31 @@ BENDS = 8.0  # times what it changes by just beside the corner: neither is that 
 BITS = 62  # of a whole number that kernels count by, its sign left aside
 
 
-def free_motion(s: Rows, t: float, q: Doubles, v: Doubles, a: Doubles) -> bool:
+def free_motion(s: Rows, t: float, y: Doubles, a: Doubles) -> bool:
     """A <- M^-1 f, f into `force`; False where M is singular or f is not finite."""
-    side = s.inside(t)
+    side, q, v = s.inside(t), y, after(y, s.n_q)
     total_force(s.model, side, q, v, s.force)
     copy(a, s.force, s.n_q)
     return divide_by_mass(s.model, side, q, v, s.M, s.work, a)
 
 
-def renew_rates(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
-    """`measure_rates`, unless these are known and never change."""
-    if not s.known or s.moving:
-        measure_rates(s, t, q, v)
-
-
-def renew_biases(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
-    """`measure_biases`, unless these are known and never change."""
-    if not s.known or s.moving:
-        measure_biases(s, t, q, v)
-
-
-def measure_rates(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
-    """Jacobians of all rows into R, and their rates at rest, on their side of a corner."""
+def measure_rates(s: Rows, t: float, y: Doubles) -> None:
+    """Jacobians of all rows into R, and their rates at rest, unless these are known and never change."""
+    if s.known and not s.moving:
+        return
     if s.n_j > 0:
-        rates_on_side(s, s.joints, 0, t, q, v)
+        rates_on_side(s, s.joints, 0, t, y, after(y, s.n_q))
     if s.n_c > 0:
-        rates_on_side(s, s.model, s.n_j, t, q, v)
+        rates_on_side(s, s.model, s.n_j, t, y, after(y, s.n_q))
     if s.n_t > 0:
-        rates_on_side(s, s.tangents, s.n_j + s.n_c, t, q, v)
+        rates_on_side(s, s.tangents, s.n_j + s.n_c, t, y, after(y, s.n_q))
 
 
 def rates_on_side(s: Rows, model: Model, first: int, t: float, q: Doubles, v: Doubles) -> None:
-    """The same of one model, from row `first` on. A callback tells on a corner of either side; where that is the
-    other one, rates are those of the straight line through two times inside: no digit is lost, contacts may rest.
+    """The same of one model, from row `first` on, on the side of a corner that the motion is on.
+
+    At the corner itself a callback may answer for the other side. Rates are those of the straight line through two
+    times inside then: no digit is lost, contacts may rest.
     """
     side, R, rate = s.inside(t), after(s.R, first * s.n_q), after(s.rate, first)
     if side != t:
@@ -69,15 +62,17 @@ def rates_on_side(s: Rows, model: Model, first: int, t: float, q: Doubles, v: Do
             rate[i] = 2.0 * s.near[i] - s.further[i]
 
 
-def measure_biases(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
-    """(dR/dt) v + d(rate)/dt along the motion, of all rows."""
+def measure_biases(s: Rows, t: float, y: Doubles) -> None:
+    """(dR/dt) v + d(rate)/dt along the motion, of all rows, unless these are known and never change."""
+    if s.known and not s.moving:
+        return
     s.on_joints = False
     if s.n_j > 0:
-        biases_of(s, s.joints, 0, t, q, v)
+        biases_of(s, s.joints, 0, t, y, after(y, s.n_q))
     if s.n_c > 0:
-        biases_of(s, s.model, s.n_j, t, q, v)
+        biases_of(s, s.model, s.n_j, t, y, after(y, s.n_q))
     if s.n_t > 0:
-        biases_of(s, s.tangents, s.n_j + s.n_c, t, q, v)
+        biases_of(s, s.tangents, s.n_j + s.n_c, t, y, after(y, s.n_q))
 
 
 def biases_of(s: Rows, model: Model, first: int, t: float, q: Doubles, v: Doubles) -> None:
@@ -85,12 +80,12 @@ def biases_of(s: Rows, model: Model, first: int, t: float, q: Doubles, v: Double
     bias(model, s.inside(t), s.low, s.high, q, v, s.shifted, s.G, s.near, after(s.bias, first))
 
 
-def list_gaps(s: Rows, t: float, q: Doubles, v: Doubles) -> None:
-    """Gaps of joints and contacts, into `near`."""
+def list_gaps(s: Rows, t: float, y: Doubles, gap: Doubles) -> None:
+    """Gaps of joints and contacts."""
     if s.n_j > 0:
-        gaps(s.joints, t, q, v, s.near)
+        gaps(s.joints, t, y, after(y, s.n_q), gap)
     if s.n_c > 0:
-        gaps(s.model, t, q, v, after(s.near, s.n_j))
+        gaps(s.model, t, y, after(y, s.n_q), after(gap, s.n_j))
 
 
 def respond(s: Rows) -> None:

@@ -38,7 +38,7 @@ def breaks(s: Rows, motion: RungeKutta, h: float, measured: bool) -> bool:
     if s.n_held == 0 or (s.fixed and not s.moving):
         return False
     if not measured:
-        measure_rates(s, s.t0 + h, motion.y_new, after(motion.y_new, s.n_q))
+        measure_rates(s, s.t0 + h, motion.y_new)
     i = farthest_off(s, motion)
     if i < 0:
         i = -1 if measured else open_at(s, s.t0 + h, motion)
@@ -75,7 +75,7 @@ def drive_joints(s: Rows, v: Doubles) -> bool:
 
 def open_at(s: Rows, t: float, motion: RungeKutta) -> int:
     """The first row at rest whose gap is open, or the other way, by more than errors of the step just made; or -1."""
-    list_gaps(s, t, motion.y_new, after(motion.y_new, s.n_q))
+    list_gaps(s, t, motion.y_new, s.near)
     for i in range(s.n_j + s.n_c):
         if s.rests[i] == 1 and abs(s.near[i]) > max(TOLERANCES * least_gap(s, i, motion.y_new), s.slack):
             return i
@@ -95,7 +95,7 @@ def find_way(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
         t, v = s.t0 + tau, after(motion.y_new, s.n_q)
         if abs(velocity(s, i, t, motion.y_new)) > unseen(s, i, v) and find_jump(s, motion, i, tau):
             return True
-        list_gaps(s, t, motion.y_new, after(motion.y_new, s.n_q))
+        list_gaps(s, t, motion.y_new, s.near)
         if abs(s.near[i]) > 0.5 * way:
             high = tau
         else:
@@ -106,15 +106,15 @@ def find_way(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
     return False
 
 
-def go_beyond(s: Rows, q: Doubles, v: Doubles) -> bool:
+def go_beyond(s: Rows, y: Doubles) -> bool:
     """At a corner that was found, move coordinates to its far side, as rows may jump by the place; whether it was.
 
     They go what they go in the time to which the time of a jump is known.
     """
     if s.low != s.jump:
         return False
-    margin = 2.0 * max(NUDGE * max(abs(s.t0), s.scale), coarseness(q, v, s.n_q))
-    add(q, margin, v, s.n_q)
+    v = after(y, s.n_q)
+    add(y, 2.0 * max(NUDGE * max(abs(s.t0), s.scale), coarseness(y, v, s.n_q)), v, s.n_q)
     return True
 
 
@@ -130,9 +130,8 @@ def error(s: Rows, i: int, v: Doubles) -> float:
 
 def velocity(s: Rows, i: int, t: float, y: Doubles) -> float:
     """The velocity of row i at a state."""
-    v = after(y, s.n_q)
-    measure_rates(s, t, y, v)
-    return velocity_of(s, i, v)
+    measure_rates(s, t, y)
+    return velocity_of(s, i, after(y, s.n_q))
 
 
 def hidden_by_rounding(s: Rows, motion: RungeKutta, i: int) -> float:

@@ -4,36 +4,36 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.rows.equations import least_gap, list_gaps, renew_rates, respond_held
+from lcpstep.events.rows.equations import least_gap, list_gaps, measure_rates, respond_held
 from lcpstep.events.rows.held import hold_again, measure_missing, push_by_change
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import factor_mass
 from lcpstep.kernels.clock import LEAST
 from lcpstep.kernels.dynamics import gaps
 from lcpstep.kernels.vectors import add, clear, largest
-from lcpstep.pointers import Doubles, abs, inf
+from lcpstep.pointers import Doubles, abs, after, inf
 
 FEW, MOST = 2, 50  # of Newton's iterations
 HELPS = 0.25  # of a gap: what an iteration may leave of it without new rows
 CLOSED, TOLERANCES = 1e-3, 8.0  # of the tolerance: gaps that are none, and what others may leave
 
 
-def project(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
-    """Put q, v onto the rows held, against the drift of the integration: gaps and velocities zero.
+def project(s: Rows, t: float, y: Doubles) -> bool:
+    """Put y = (q, v) onto the rows held, against the drift of the integration: gaps and velocities zero.
 
     The impulses that take the velocities are left in `change`; False where rows have become dependent.
     """
     for _ in range(FEW):
-        if not are_open(s, t, q, v) or not take_rows(s, t, q, v):
+        if not are_open(s, t, y) or not take_rows(s, t, y):
             break
-        push_by_change(s, q)
-    if not take_rows(s, t, q, v):
+        push_by_change(s, y)
+    if not take_rows(s, t, y):
         return False
-    push_onto_rows(s, v)
+    push_onto_rows(s, after(y, s.n_q))
     return True
 
 
-def put_on_rows(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
+def put_on_rows(s: Rows, t: float, y: Doubles) -> bool:
     """Put q onto the rows held, along the ways of those at hand while these help; False where no place is found.
 
     By Newton's method; what has pushed is left in `held`.
@@ -41,16 +41,16 @@ def put_on_rows(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
     before, anew = inf, False
     clear(s.held, s.n_held)
     for k in range(MOST):
-        if not are_open(s, t, q, v) or (k > 0 and none_open(s, q, CLOSED)):
+        if not are_open(s, t, y) or (k > 0 and none_open(s, y, CLOSED)):
             return True
         worst = largest(s.change, 0.0, s.n_held)
         helps = worst < HELPS * before
         if anew and not helps:
-            return none_open(s, q, TOLERANCES)
+            return none_open(s, y, TOLERANCES)
         anew = not helps
-        if anew and not take_rows(s, t, q, v):
+        if anew and not take_rows(s, t, y):
             return False
-        push_by_change(s, q)
+        push_by_change(s, y)
         add(s.held, 1.0, s.change, s.n_held)
         before = worst
     return False
@@ -68,12 +68,12 @@ def push_onto_rows(s: Rows, v: Doubles) -> None:
             v[j] = 0.0
 
 
-def are_open(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
+def are_open(s: Rows, t: float, y: Doubles) -> bool:
     """Whether gaps of rows held are not exactly zero; these, with their signs turned, into `change`."""
     if s.n_held > s.n_kept:
-        list_gaps(s, t, q, v)
+        list_gaps(s, t, y, s.near)
     else:
-        gaps(s.joints, t, q, v, s.near)
+        gaps(s.joints, t, y, after(y, s.n_q), s.near)
     for m in range(s.n_held):
         s.change[m] = -s.near[s.row[m]] if s.row[m] < s.n_j + s.n_c else 0.0  # tangents have none
     return largest(s.change, 0.0, s.n_held) > 0.0
@@ -87,13 +87,13 @@ def none_open(s: Rows, q: Doubles, tolerances: float) -> bool:
     return none
 
 
-def take_rows(s: Rows, t: float, q: Doubles, v: Doubles) -> bool:
+def take_rows(s: Rows, t: float, y: Doubles) -> bool:
     """Rows, rates and factors of the rows held at this state; False where these have become dependent."""
     if s.known:
-        renew_rates(s, t, q, v)
+        measure_rates(s, t, y)
         return True
-    if not factor_mass(s.model, s.inside(t), q, v, s.M):
+    if not factor_mass(s.model, s.inside(t), y, after(y, s.n_q), s.M):
         return False
-    renew_rates(s, t, q, v)
+    measure_rates(s, t, y)
     respond_held(s)
     return hold_again(s) < 0

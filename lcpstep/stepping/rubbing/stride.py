@@ -7,7 +7,7 @@ import cython
 from lcpstep.events.codes import OPEN
 from lcpstep.events.contacts.arrival import arrive, find_standing, of_force, tells
 from lcpstep.events.contacts.balance import lets_go
-from lcpstep.events.contacts.equations import measure, measure_gaps
+from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.loose import first_stray
 from lcpstep.events.contacts.modes import decide, keep_mode, undecided
@@ -17,7 +17,7 @@ from lcpstep.events.contacts.step import mark_resting
 from lcpstep.events.contacts.surfaces import FREE
 from lcpstep.events.rows.chatter import moves
 from lcpstep.events.rows.contacts import add_impulse, hold_modes, list_by_row, still
-from lcpstep.events.rows.equations import respond_to
+from lcpstep.events.rows.equations import list_gaps, respond_to
 from lcpstep.events.rows.jumps import breaks
 from lcpstep.events.rows.keep import keep, keep_awaited, keep_event
 from lcpstep.events.rows.projection import project
@@ -235,7 +235,7 @@ def keep_between(s: Strides, t: float, tau: float) -> float:
 def put_between(s: Strides, t: float) -> None:
     """Put the state `seen` onto the rows held, and out of obstacles: what has just been let go rises slowly."""
     for _ in range(LANDINGS):
-        project(s.rows, t, s.seen, after(s.seen, s.n_q))
+        project(s.rows, t, s.seen)
         if not leaves_obstacles(s, t):
             break
 
@@ -243,7 +243,7 @@ def put_between(s: Strides, t: float) -> None:
 def leaves_obstacles(s: Strides, t: float) -> bool:
     """Put open contacts that are inside of their obstacles at `seen` onto these, rows held as they are; if any."""
     some = False
-    measure_gaps(s, t, s.seen)
+    list_gaps(s.rows, t, s.seen, s.gap)
     for c in range(s.n_c):
         i = s.n_j + c
         if s.mode[c] == OPEN and s.gap[i] < -s.band[GUARDS * c]:

@@ -131,7 +131,7 @@ def verlet(s: Strides, t: float, h: float) -> bool:
     clear(s.push, s.n_r)
     clear(s.pull, n)
     if s.rows.n_held > 0:
-        if not s.based and not take_rows(s.rows, t, s.y, after(s.y, n)):
+        if not s.based and not take_rows(s.rows, t, s.y):
             return False
         s.based = False
         if not stays_on_rows(s, t + h):
@@ -206,7 +206,7 @@ def go_on_with(s: Strides) -> None:
 def stays_on_rows(s: Strides, t: float) -> bool:
     """Put the position at the end of a step onto the rows held; False where none is found there (`astray`)."""
     s.astray = -1
-    if s.rows.n_held > 0 and not put_on_rows(s.rows, t, s.y_new, after(s.y_new, s.n_q)):
+    if s.rows.n_held > 0 and not put_on_rows(s.rows, t, s.y_new):
         s.astray = worst_row(s)
     return s.astray < 0
 
