@@ -93,10 +93,11 @@ def stop(s: Rubbing, c: int) -> None:
 
 
 def land_with(s: Rubbing) -> None:
-    """Close the contacts that a stop has left with no gap above the tolerance, and no speed, along it or not.
+    """Close the contacts that a stop has left without a gap above the tolerance, and without speed in any direction.
 
-    On its way down in a hop that rounding hides, one would fall on until the gap tells, and strike that much faster.
-    At rest, in a gap that hops left out have made, one would miss the next blow to what it is connected with.
+    One that comes down from a hop that rounding hides would else fall on until its gap can be told, and strike that
+    much faster. One at rest, in a gap that hops left out have made, would miss the next blow to what it is connected
+    with.
     """
     share = share_left(s)
     for d in range(s.n_c):
@@ -110,8 +111,8 @@ def land_with(s: Rubbing) -> None:
 def stop_with(s: Rubbing, c: int) -> None:
     """Contacts that stop with contact c are those whose sliding velocity comes to zero when its own does.
 
-    Feet of one body stop together, and the ends of a rod: a step is only as exact as its order, and what of one
-    velocity it has left, it has of the others.
+    Feet of one body stop together, and the ends of a rod. What the error of a step has left of one velocity it has
+    left of the others in proportion.
     """
     i = s.n_j + s.n_c + c
     accelerate_as_held(s.rows)

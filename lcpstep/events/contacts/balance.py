@@ -1,10 +1,9 @@
 """Contacts that open where forces balance, as kernels: whether their accelerations are known.
 
-Where forces cancel, what is left of their sum is rounding. How large that is the sum does not tell, nor does a force
-that is a function of the state. But forces that balance do so for a moment: an acceleration that is nothing beside
-what it will be in a moment says nothing, and the forces a little later decide (`loop.look_on`).
-
-The moment is so short that a hop within it cannot be told from rest.
+Where forces cancel, what is left of their sum is rounding, and neither the sum nor a force given as a function says
+how large that is. But forces that balance do so only for a moment. An acceleration that is nothing beside what it
+will be in a moment decides nothing: the forces a little later do (`loop.look_on`). The moment is so short that a hop
+within it cannot be told from rest.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ def opens_any(s: Rubbing) -> bool:
 
 
 def changes_any(s: Rubbing) -> bool:
-    """Whether a contact that a force presses, or holds at rest, in the modes at hand no longer does by `decide`."""
+    """Whether `decide` opens a contact that now carries a force, or lets one slip that sticks."""
     some = False
     for c in range(s.n_c):
         some = some or lets_go(s, c)
@@ -43,15 +42,15 @@ def changes_any(s: Rubbing) -> bool:
 
 
 def lets_go(s: Rubbing, c: int) -> bool:
-    """Whether contact c is one of these."""
+    """Whether it does so with contact c."""
     opens, slips = s.new_mode[c] == OPEN, s.mode[c] == STICKS and s.new_mode[c] != STICKS
     return s.mode[c] != OPEN and s.loaded[c] == 1 and (opens or slips)
 
 
 def reconsider(s: Rubbing, t: float, longest: float) -> int:
-    """`decide` anew at the base state, where a contact opens by none but an acceleration that is known; a status.
+    """`decide` anew at the base state, with accelerations in `doubt` that are not known; a status.
 
-    What is not known is left in `doubt`.
+    A contact opens only by an acceleration that is more than that. Where nothing is in doubt, `doubt` is zero.
     """
     h, share = min(s.next_step, longest), MOMENT
     while share >= SHORTEST:

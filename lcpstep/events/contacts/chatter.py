@@ -30,12 +30,12 @@ from lcpstep.events.rows.chatter import (
 from lcpstep.events.rows.contacts import (
     gap_tolerance,
     hold_modes,
+    list_multipliers,
     measure_velocities,
     of_tangent,
     rubs,
     sliding,
     still,
-    take_velocities,
 )
 from lcpstep.events.rows.equations import acceleration_of, size_of, velocity_of
 from lcpstep.events.rows.held import constrain, is_held
@@ -148,12 +148,18 @@ def close(s: Rubbing, c: int) -> None:
         bring_to_rest(s, c)
         hold_modes(s.rows)
     copy(s.seen, s.v, s.n_q)
-    take_velocities(s.rows)
+    take_velocities(s)
     if not at_rest and leaves_cone(s, c):
         take_back(s, c)
     put_on_account(s.rows)
     measure_velocities(s.rows, s.v)
     find_free(s)
+
+
+def take_velocities(s: Rubbing) -> None:
+    """Take their velocities from the rows held; the impulses that do so by row into `multiplier`, not counted."""
+    constrain(s.rows, s.v, s.rate)
+    list_multipliers(s.rows)
 
 
 def bring_to_rest(s: Rubbing, c: int) -> None:
@@ -201,5 +207,5 @@ def take_back(s: Rubbing, c: int) -> None:
     s.direction[c] = -friction / (s.mu[c] * normal) if s.mu[c] > 0.0 else direction
     if hold_modes(s.rows):
         copy(s.v, s.seen, s.n_q)
-        take_velocities(s.rows)
+        take_velocities(s)
     s.mode[c], s.direction[c] = mode, direction

@@ -14,8 +14,8 @@ from lcpstep.events.codes import JUMP, OPEN
 from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.impact import forget_terms
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import count_impulses, measure_velocities, still
-from lcpstep.events.rows.jumps import drive_joints, go_beyond
+from lcpstep.events.rows.contacts import still, stop_joints
+from lcpstep.events.rows.jumps import go_beyond, joints_jump
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.pointers import abs
 
@@ -47,9 +47,8 @@ def strike_beyond(s: Rubbing) -> int:
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
     forget_terms(s)
-    if drive_joints(s.rows, s.v):
-        count_impulses(s.rows, s.rows.held)
-        measure_velocities(s.rows, s.v)
+    if joints_jump(s.rows, s.v):
+        stop_joints(s.rows)
     for c in range(s.n_c):
         i, closed = s.n_j + c, s.mode[c] != OPEN
         s.touches[c] = 1 if closed or s.before[c] < 0.0 else 0

@@ -22,9 +22,9 @@ from lcpstep.pointers import Doubles, abs, after, max, min
 
 
 def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
-    """Rows with their rates and biases, and the Delassus matrix; the mass matrix must be that of `free_motion`.
+    """Rows with their rates and biases, the Delassus matrix, and friction: False where a coefficient is no number.
 
-    False where a coefficient of friction is none.
+    The mass matrix must be that of `free_motion`.
     """
     measure_rates(s.rows, t, y)
     measure_biases(s.rows, t, y)
@@ -33,7 +33,10 @@ def measure_rows(s: Rubbing, t: float, y: Doubles) -> bool:
 
 
 def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
-    """Coefficients of friction at the sliding velocities, which on the way to zero do not change their sign."""
+    """Coefficients of friction at the sliding velocities; False where one is no number.
+
+    A contact that sticks or leans counts as not sliding, and one whose velocity has passed zero within a step, too.
+    """
     if not s.coefficients.varies:
         return True
     q, v = y, after(y, s.n_q)
@@ -68,9 +71,10 @@ def measure(s: Rubbing, t: float, y: Doubles) -> bool:
 
 
 def share_left(s: Rubbing) -> float:
-    """Of the tolerance, as much as is left of the motion at the base state, where that is less; of no motion all.
+    """By what factor to lessen the tolerance at the base state: a motion smaller than the tolerance is its measure.
 
-    What is put right by more than the motion, impact for impact, would not let it die away.
+    Else what is put right at each impact, by up to the tolerance, would be more than the motion that is left, and
+    keep that from dying away. One where the motion is larger, or zero.
     """
     left = largest(s.q, 0.0, s.n_q) + s.scan_length * largest(s.v, 0.0, s.n_q)
     whole = min(s.atol, s.rtol * s.rows.longest)
@@ -95,7 +99,7 @@ def size_of_loads(s: Rubbing, i: int) -> float:
 
 
 def load_terms(s: Rubbing, j: int) -> float:
-    """Size of the terms of the force on coordinate j, which may cancel; of callbacks nothing finer is known."""
+    """Size of the terms of the force on coordinate j, which may cancel; 0 of callbacks, whose terms are not known."""
     size, n = 0.0, s.n_q
     if s.model.linear:
         for k in range(n):
@@ -121,7 +125,7 @@ def let_stick(s: Rubbing, fastest: float) -> bool:
 
 
 def most_friction(s: Rubbing, c: int) -> float:
-    """The friction that contact c, which sticks, has at most: with that of all for which its tangent is held."""
+    """The most friction that contact c, which sticks, may have, and those that it stands for (`leader`)."""
     if not s.sharing:
         return s.mu_s[c] * s.multiplier[s.n_j + c]
     most = 0.0

@@ -106,13 +106,16 @@ def begin_guards(s: Rubbing, t: float) -> bool:
 
 
 def no_gap(s: Rubbing, c: int, u: float, alpha: float) -> float:
-    """The gap of contact c that is none where all its terms vanish: little beside a hop that begins."""
+    """The gap of contact c that counts as none even where all its terms vanish: a small share of the tolerance.
+
+    Of a hop that begins, with velocity u and acceleration alpha, it is small beside the height u^2 / (2 |alpha|).
+    """
     least = NOISE * gap_tolerance(s.rows, c)
     return min(least, LOW * u * u / -alpha) if u > 0.0 and alpha < 0.0 else least
 
 
 def depth(s: Rubbing, c: int) -> float:
-    """Twice how deep contact c goes, past which joints lead with a speed that counts for none (`parting.pass_by`)."""
+    """Twice how deep contact c goes where joints lead it past a surface that it touches; see `parting.pass_by`."""
     u, alpha = s.rise[c], s.bend[c]
     if not (u < 0.0 and alpha > 0.0 and -u <= s.terms[c] and is_led(s.rows, c)):
         return 0.0
@@ -143,7 +146,7 @@ def first_event(s: Rubbing, h: float) -> int:
 
 
 def search_part(s: Rubbing, h: float, a: float, b: float, parts: int) -> bool:
-    """Find the first guard that acts in the part sampled, from a to b of the step; False where it is too long."""
+    """Find the first guard that acts from a to b, the part of the step sampled; False where that part is too long."""
     for g in range(GUARDS * s.n_c):
         if not has(s, g):
             continue
@@ -159,9 +162,10 @@ def search_part(s: Rubbing, h: float, a: float, b: float, parts: int) -> bool:
 
 
 def fits(s: Rubbing, h: float, g: int, parts: int) -> bool:
-    """Whether guard g is the polynomial of its samples, or close to it in one of so many parts, at most.
+    """Whether guard g is close to the polynomial of its samples, or the parts are as many as there may be.
 
-    In these the samples of a gap stand for it: beside an edge a polynomial swings below zero, not they.
+    There the samples of a gap stand for its coefficients: beside an edge of the obstacle the polynomial may swing
+    below zero where the samples do not.
     """
     copy(s.scan.sample, after(s.samples, g * SAMPLES), SAMPLES)
     error, most = convert(s.scan), largest(s.scan.sample, 0.0, SAMPLES)
@@ -214,7 +218,7 @@ def find_bows(s: Rubbing, h: float) -> None:
 
 
 def bow(s: Rubbing, g: int) -> float:
-    """How far guard g leads off that line."""
+    """How far guard g may lead off the line between its values at the ends of the step, by `find_bows`."""
     c, n, m = g // GUARDS, s.n_q, s.n_q + s.n_r
     i, most = s.n_j + c, 0.0
     if s.mode[c] == OPEN or (s.mode[c] == SLIDES and g % GUARDS == 1):

@@ -16,7 +16,7 @@ from lcpstep.events.contacts.equations import renew_friction
 from lcpstep.events.contacts.parting import approaches, let_go, pass_by, rejoin
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import GONE
-from lcpstep.events.rows.contacts import has_stopped, measure_velocities, sliding, still, stop_rows
+from lcpstep.events.rows.contacts import has_stopped, measure_velocities, sliding, still, stop_joints
 from lcpstep.events.rows.cycle import ROUNDS, fades, look_back, recurs, sum_up
 from lcpstep.events.rows.exchange import leave_for_later, some_exchange
 from lcpstep.events.rows.held import hold_joints
@@ -94,7 +94,7 @@ def strike_by_either(s: Rubbing, t: float, plastic: bool) -> bool:
 
 
 def look_before(s: Rubbing) -> None:
-    """The velocities before an impact, and before the corner that it is at; of what is closed they are rounding."""
+    """The velocities before an impact, or before the jump at a corner; what is closed has none but rounding."""
     for c in range(s.n_c):
         s.before[c] = s.velocity[s.n_j + c] - s.jumped[c]
         if s.mode[c] != OPEN:
@@ -107,7 +107,7 @@ def look_before(s: Rubbing) -> None:
 def can_rest(s: Rubbing) -> bool:
     """Whether a plastic impact would bring to rest what is struck in turn for ever: not between walls that close.
 
-    Contacts between which there is no room are left closed, as a message names them.
+    Modes are put back where it would; else all that touch are left closed, for the message names them.
     """
     look_before(s)
     copy_indices(s.tried, s.mode, s.n_c)
@@ -118,9 +118,9 @@ def can_rest(s: Rubbing) -> bool:
 
 
 def take_for_none(s: Rubbing, c: int) -> None:
-    """A sliding velocity of contact c that is rounding: of what sticks or leans all, but where its obstacle jumps.
+    """Take a sliding velocity of contact c for none that is rounding, or, where it sticks or leans, below `still`.
 
-    Beside other velocities what is left of one that has died away, 1e-49, keeps solvers from an answer.
+    What is left of a velocity that has died away, say 1e-49, would keep solvers from an answer beside others.
     """
     i, T = s.n_c + c, s.n_j + s.n_c + c
     least = still(s.rows, T) if s.mode[c] in (STICKS, LEANS) else s.terms[i]
@@ -180,9 +180,7 @@ def strike_with(s: Rubbing, t: float, n_a: int, n_f: int, jammed: int, plastic: 
     """
     for a in range(n_a + n_f):
         s.rows.push(row_of(s.rows, a, n_a), s.problem.impulse[a])
-    hold_joints(s.rows)
-    stop_rows(s.rows)
-    measure_velocities(s.rows, s.v)
+    stop_joints(s.rows)
     for a in range(n_a):
         c = s.problem.ids[a]
         u = s.velocity[s.n_j + c]

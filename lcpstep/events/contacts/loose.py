@@ -21,9 +21,10 @@ from lcpstep.kernels.dop853 import STAGES
 from lcpstep.pointers import Doubles, abs, after, max, min
 
 NEAR = 1e-3  # of the way to either end of where it is sought: how well a time is known
-# Of the time in which it grows to that from what rounding hides: how much earlier it begins; one of power 8 in time
+# An acceleration is seen to rise from rounding (NOISE) to DRIFT of its terms: by how much of the time between the two
+# it has begun earlier, if it grows by power 8 of time
 EARLIER = 0.35
-MORE = 4.0  # times such an acceleration: what is left where it was, or kept by other rows, is looked at again
+MORE = 4.0  # times larger the acceleration must be by which a contact is seen to leave its rest once more
 
 
 def find_loose(s: Rubbing) -> None:

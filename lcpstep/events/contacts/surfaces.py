@@ -63,9 +63,9 @@ def lift(s: Rubbing, c: int) -> bool:
 
 
 def is_known(s: Rubbing, c: int, way: Doubles, speed: float) -> bool:
-    """Whether a time that cannot be told leaves the normal of contact c what it is, as it does not in mid-bowl.
+    """Whether the normal of contact c stays what it is within a time too short to be told; not in mid-bowl.
 
-    The body goes on as it does, and as the obstacle, closing in, pushes it along `way`.
+    Meanwhile the body goes on with its velocity, and is pushed along `way` by the obstacle that closes in.
     """
     moment, pushed = s.clock.untold(s.length), s.rate[s.n_j + c] / speed
     for j in range(s.n_q):
@@ -92,9 +92,9 @@ def has_room(s: Rubbing, c: int, way: Doubles, speed: float, g: float) -> bool:
 
 
 def come_to_rest(s: Rubbing) -> bool:
-    """Put at rest, at zero, a motion of which nothing is left; False where the rest is not finite there.
+    """Put a motion of which nothing is left at rest, at zero; False where something is not finite there.
 
-    Beyond, squares of errors tell nothing, and soon numbers have no digits more, by which impacts have an answer.
+    Numbers that small soon have no digits any more: squares of them vanish, and impacts have no answer.
     """
     left = largest(s.y, 0.0, 2 * s.n_q)
     if left == 0.0 or left > GONE * s.atol:
@@ -140,8 +140,8 @@ def find_touching(s: Rubbing) -> None:
 def find_coming(s: Rubbing, c: int) -> None:
     """Mark those too that close before it can be told when contact c, which has come to its surface, has done so.
 
-    A slow one crosses in long what its gap is known to: a corner that it is part of is an impact of all its walls. Of
-    a hop's end as little of the hop is not known.
+    A slow contact takes long to cross what rounding leaves of its gap: where it comes into a corner of walls, all of
+    these are struck at once. After a hop the time is known better: to the same share of the hop's length.
     """
     u, share = s.velocity[s.n_j + c], share_left(s)
     moment = min(touching(s, c, share) / -u, TOGETHER * (s.clock.t0 - s.rows.struck[c])) if u < 0.0 else 0.0

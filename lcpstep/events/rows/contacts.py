@@ -16,15 +16,15 @@ import numpy as np
 
 from lcpstep.arrays import doubles, indices
 from lcpstep.events.codes import BEGIN, LEANS, OPEN, SLIDES, STICKS
-from lcpstep.events.rows.equations import least_gap, least_speed, other, size_of
+from lcpstep.events.rows.equations import least_gap, least_speed, size_of
 from lcpstep.events.rows.held import constrain, hold, hold_joints, is_held
-from lcpstep.events.rows.loads import share_out
+from lcpstep.events.rows.loads import list_by_row
 from lcpstep.events.rows.on_joints import can_bear
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.together import gap_rounding
-from lcpstep.kernels.vectors import add, clear, product, size_of_product
+from lcpstep.kernels.vectors import add, product, size_of_product
 from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
 
 STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
@@ -133,7 +133,6 @@ class Contacts(Rows):
         if not hold_modes(self):
             hold_joints(self)
         stop_rows(self)
-        measure_velocities(self, self.v)
 
     def closed_ones(self) -> list[int]:
         """The contacts that are closed."""
@@ -279,27 +278,17 @@ def list_multipliers(s: Contacts) -> None:
     list_by_row(s, s.held, s.multiplier)
 
 
-def list_by_row(s: Contacts, x: Doubles, out: Doubles) -> None:
-    """The same of any x: the friction of sliding contacts on their tangents, what joints say twice on all of them."""
-    clear(out, s.n_r)
-    for m in range(s.n_held):
-        i = s.row[m]
-        out[i] += x[m]
-        if s.share[i] != 0.0:
-            out[other(s, i)] += s.share[i] * x[m]
-    share_out(s, out)
+def stop_joints(s: Contacts) -> None:
+    """Take their velocities from the joints."""
+    hold_joints(s)
+    stop_rows(s)
 
 
 def stop_rows(s: Contacts) -> None:
-    """Impulses on the rows held, sliding friction included, that take their velocities."""
+    """Impulses on the rows held, sliding friction included, that take their velocities; all velocities after them."""
     constrain(s, s.v, s.rate)
     count_impulses(s, s.held)
-
-
-def take_velocities(s: Contacts) -> None:
-    """The same, not counted, but by row into `multiplier`."""
-    constrain(s, s.v, s.rate)
-    list_multipliers(s)
+    measure_velocities(s, s.v)
 
 
 def count_impulses(s: Contacts, x: Doubles) -> None:

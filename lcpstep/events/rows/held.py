@@ -53,7 +53,8 @@ def first_between(s: Rows, i: int, k: int) -> int:
 def hold(s: Rows, i: int) -> bool:
     """Add row i to the rows held, unless it depends on them as far as rounding lets tell.
 
-    False where its force would move it the other way; `either` way it may be held, and is not left out.
+    False where its pivot is negative: a force on it, beside those rows, would move it the other way. Where `either`
+    way is allowed such a row is held, too.
     """
     k, r = s.n_held, s.n_r
     s.row[k] = i
@@ -79,7 +80,7 @@ def hold(s: Rows, i: int) -> bool:
 
 
 def grow(s: Rows, i: int, m: int, start: int) -> float:
-    """Entries m of L and U of row i, the next one; what rounding leaves of their product, in roundings."""
+    """Entries m of L and U for row i, which comes next; what rounding leaves of their product, in roundings."""
     k, r, first = s.n_held, s.n_r, first_between(s, i, s.row[m])
     first = start if start > first else first
     low, less = what_is_left(s, k, m, first)

@@ -18,7 +18,6 @@ from lcpstep.events.rows.equations import (
     size_of,
     velocity_of,
 )
-from lcpstep.events.rows.held import constrain, hold_joints
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.clock import NUDGE
 from lcpstep.kernels.rungekutta import RungeKutta
@@ -62,15 +61,12 @@ def farthest_off(s: Rows, motion: RungeKutta) -> int:
     return found
 
 
-def drive_joints(s: Rows, v: Doubles) -> bool:
-    """Put velocities onto joints that have jumped at a corner, their impulses into `held`; whether any has."""
-    driven = False
+def joints_jump(s: Rows, v: Doubles) -> bool:
+    """Whether a joint has jumped at a corner: the velocity v is off it by more than errors."""
+    jumped = False
     for i in range(s.n_j):
-        driven = driven or abs(velocity_of(s, i, v)) > error(s, i, v)
-    if driven:
-        hold_joints(s)
-        constrain(s, v, s.rate)
-    return driven
+        jumped = jumped or abs(velocity_of(s, i, v)) > error(s, i, v)
+    return jumped
 
 
 def open_at(s: Rows, t: float, motion: RungeKutta) -> int:

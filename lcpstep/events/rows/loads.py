@@ -59,6 +59,17 @@ def spread(s: Rows, c: int, force: Doubles) -> int:
     return leaves
 
 
+def list_by_row(s: Rows, x: Doubles, out: Doubles) -> None:
+    """Forces or impulses by row, of x of the rows held: with their shares, and on all joints that say the same."""
+    clear(out, s.n_r)
+    for m in range(s.n_held):
+        i = s.row[m]
+        out[i] += x[m]
+        if s.share[i] != 0.0:
+            out[other(s, i)] += s.share[i] * x[m]
+    share_out(s, out)
+
+
 def share_out(s: Rows, x: Doubles) -> None:
     """Forces or impulses x of joints, by row, where some say the same: of least norm, which change no motion.
 

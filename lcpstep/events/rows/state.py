@@ -32,7 +32,7 @@ class Rows(Clock):
     row, n_held               rows held, and how many;  n_kept   joints among them, which come first
     held : (n_r,)             multipliers of the rows held
     share : (n_r,)            force of the `other` row of its contact that comes with that of a row held
-    either : (n_r,)           whether a row may be held though its force alone would move it the other way
+    either : (n_r,)           whether a row may be held though its force would move it the other way: `held.hold`
     L : (n_r, n_r)            factors of the matrix of the rows held;  doubt   relative error of a pivot, in roundings
     idle : (n_j, n_j)         what joints that say the same can take from each other, see `loads`
     rests : (n_r,)            whether the velocity of a row is to be zero, held or not: of joints always

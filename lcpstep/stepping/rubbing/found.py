@@ -43,7 +43,7 @@ def note_base(s: Strides, t: float) -> bool:
 
 
 def measure_base(s: Strides, t: float) -> bool:
-    """The same, with the bands of the guards as they are."""
+    """The same, but that bands of the guards, and accelerations of gaps, stay as they are."""
     if not s.rates(t, s.y, s.K):
         return False
     s.evaluations += 1
@@ -232,7 +232,7 @@ def is_low(s: Strides, c: int, tau: float) -> bool:
 
 
 def interrupt(s: Strides, t: float, tau: float) -> None:
-    """The motion goes on from t, after tau: low hops are followed up to there, but not beyond corners of surfaces."""
+    """The motion goes on from t, tau after the base: note low hops still under way there, but not across a corner."""
     for c in range(s.n_c):
         g, half = GUARDS * c, 0.5 * s.begin_bend[c]
         rises = hops(s, c) and half >= 0.0 and is_low(s, c, tau)
@@ -268,9 +268,8 @@ def locate(s: Strides, g: int, h: float) -> float:
             if not look_after(s, tau):
                 return NOWHERE
             break
-    if rises(s, g):
-        return NOWHERE
-    return tau if crossed or (s.value[g] <= s.band[g] and s.armed[g] == 1) else NOWHERE
+    acts = crossed or (s.value[g] <= s.band[g] and s.armed[g] == 1)
+    return tau if acts and not rises(s, g) else NOWHERE
 
 
 def look_after(s: Strides, tau: float) -> bool:

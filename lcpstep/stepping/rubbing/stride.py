@@ -16,10 +16,11 @@ from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.contacts.step import mark_resting
 from lcpstep.events.contacts.surfaces import FREE
 from lcpstep.events.rows.chatter import moves
-from lcpstep.events.rows.contacts import add_impulse, hold_modes, list_by_row, still
+from lcpstep.events.rows.contacts import add_impulse, hold_modes, still
 from lcpstep.events.rows.equations import list_gaps, respond_to
 from lcpstep.events.rows.jumps import breaks
 from lcpstep.events.rows.keep import keep, keep_awaited, keep_event
+from lcpstep.events.rows.loads import list_by_row
 from lcpstep.events.rows.projection import project
 from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, PROJECTION_FAILED

@@ -21,7 +21,7 @@ import numpy as np
 from lcpstep.arrays import doubles
 from lcpstep.events.contacts.smooth import Smooth
 from lcpstep.events.contacts.state import GUARDS
-from lcpstep.events.rows.contacts import list_by_row
+from lcpstep.events.rows.loads import list_by_row
 from lcpstep.events.rows.projection import push_onto_rows, put_on_rows, take_rows
 from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.vectors import add, clear, copy, distance, finite, largest
