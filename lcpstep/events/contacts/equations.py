@@ -109,17 +109,16 @@ def load_terms(s: Rubbing, j: int) -> float:
     return size
 
 
-def let_stick(s: Rubbing, fastest: float) -> bool:
-    """Let stick what slides without forces no faster than that, or than the tolerance tells; whether there is any.
+def let_stick(s: Rubbing) -> bool:
+    """Let stick what slides without forces no faster than the tolerance tells; whether there is any.
 
-    In a corner of two rough surfaces, where only what sticks has forces, rounding of a blow is no sliding, and what
-    turns dies away with the hops.
+    In a corner of two rough surfaces, where only what sticks has forces, rounding of a blow is no sliding.
     """
     some = False
     for c in range(s.n_c):
         i = s.n_j + s.n_c + c
         slides = s.mode[c] != OPEN and s.free[c] == 0
-        if slides and abs(s.velocity[i]) <= max(fastest, speed_tolerance(s.rows, i)):
+        if slides and abs(s.velocity[i]) <= speed_tolerance(s.rows, i):
             s.free[c], s.problem.mu[c], some = 1, s.mu_s[c], True
     return some
 

@@ -28,7 +28,7 @@ from lcpstep.events.codes import (
 from lcpstep.events.contacts.balance import changes_any, opens_any, reconsider
 from lcpstep.events.contacts.chatter import close_small
 from lcpstep.events.contacts.corners import turn_corner
-from lcpstep.events.contacts.equations import let_stick, measure
+from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.guards import begin_guards
 from lcpstep.events.contacts.impact import forget_terms, jump
 from lcpstep.events.contacts.jamming import jam
@@ -41,7 +41,7 @@ from lcpstep.events.rows.keep import keep, keep_event
 from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 from lcpstep.kernels.vectors import clear, copy, copy_indices
-from lcpstep.pointers import abs, max, min
+from lcpstep.pointers import max, min
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
 LOOK_AHEAD, FURTHER = 1e-6, 10.0
@@ -145,8 +145,6 @@ def settle(s: Rubbing) -> int:
         if not measure(s, t, s.y):
             return NOT_FINITE
         code = seek_modes(s, t)
-        if code == PAINLEVE_INCONSISTENT and turn > 0 and let_stick(s, fastest_hop(s)):
-            code = seek_modes(s, t)
         if code == DONE:
             code = obey(s, t)
         if code != DONE:
@@ -154,15 +152,6 @@ def settle(s: Rubbing) -> int:
         if turn == s.n_c or not close_small(s, t):
             break
     return set_out(s, t)
-
-
-def fastest_hop(s: Rubbing) -> float:
-    """How fast the last hop struck of those that are left out."""
-    fastest = 0.0
-    for c in range(s.n_c):
-        if s.rows.left[c] >= 0.0:
-            fastest = max(fastest, abs(s.before[c]))
-    return fastest
 
 
 def seek_modes(s: Rubbing, t: float) -> int:

@@ -62,7 +62,7 @@ def decide(s: Rubbing) -> int:
             rate = acceleration_on_joints(s.rows, row_of(s.rows, a, n_a), s.a)
             s.problem.rate[a] = rate if abs(rate) > LEAST else 0.0
         code = find_forces(s, n_a, n_f)
-        if code == PAINLEVE_INCONSISTENT and begins and let_stick(s, 0.0):
+        if code == PAINLEVE_INCONSISTENT and begins and let_stick(s):
             continue
         if code != DONE:
             return code
