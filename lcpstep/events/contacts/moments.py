@@ -12,7 +12,6 @@ from lcpstep.events.codes import SLIDES
 from lcpstep.events.contacts.guards import UNKNOWN, look, look_at_stage
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.rows.contacts import still
-from lcpstep.events.rows.jumps import find_jump
 from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.dop853 import STAGES
 from lcpstep.kernels.vectors import copy
@@ -51,24 +50,6 @@ def jumps(s: Rubbing, g: int, tau: float) -> bool:
     """Whether guard g is far from zero where its slope says that it is zero: a force has jumped, or a belt."""
     least = still(s.rows, s.n_j + s.n_c + g // GUARDS) if of_sliding(s, g) else s.band[g]
     return abs(s.value[g]) > least and abs(missing(s, g)) > NOISE * (abs(s.clock.t0) + tau)
-
-
-def turns_at_once(s: Rubbing, g: int, tau: float, h: float) -> bool:
-    """Whether guard g, a sliding velocity located at tau, is turned by a belt that jumps: a corner then.
-
-    What begins to slide, within its band, has no slope there that would tell: the step of size h tells.
-    """
-    if s.risen:
-        if tau <= 0.0 or s.value[g] >= 0.0 or not jumps(s, g, tau):  # at once, and not looked at
-            return False
-        s.clock.break_at(s.clock.t0 + tau)
-        return True
-    if find_jump(s.rows, s, s.n_j + s.n_c + g // GUARDS, h):
-        return True
-    if tau > 0.0:
-        s.step(s.clock.t0, tau)
-        s.complete(s.clock.t0, tau)
-    return False
 
 
 def close_in(s: Rubbing, g: int, tau: float, longest: float) -> float:

@@ -11,7 +11,7 @@ from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
 from lcpstep.events.contacts.hops import carry, find_landings, interrupt, shortest_hop
 from lcpstep.events.contacts.loose import first_stray
 from lcpstep.events.contacts.modes import decide, undecided
-from lcpstep.events.contacts.moments import jumps, locate, of_sliding, turns_at_once
+from lcpstep.events.contacts.moments import jumps, locate, of_sliding
 from lcpstep.events.contacts.passing import take_over
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.contacts.switching import reach_guard, watch
@@ -99,8 +99,6 @@ def complete_to_event(s: Rubbing, h: float) -> int:
     tau = land(s, g, longest) if lands else locate(s, g, h, longest)
     if tau == UNKNOWN:
         return NOT_FINITE
-    if of_sliding(s, g) and turns_at_once(s, g, tau, h):
-        return DONE
     interrupt(s, g // GUARDS, tau)
     take_over(s, min(s.clock.after(tau), border), tau)
     if code != DONE or (tau > 0.0 and of_sliding(s, g) and jumps(s, g, tau)):
