@@ -1,7 +1,7 @@
 """When a guard acts that is known to act within a step: its root, by steps that end there, as kernels.
 
-A force, or a belt, that jumps at a time that is no corner of the scene takes its guard through zero without a root:
-halving finds the time. The modes are decided by the force beyond it; where a belt jumps, as at a corner.
+A force that jumps at a time that is no corner of the scene takes its guard through zero without a root: halving finds
+the time, and the modes are decided by the force beyond it. Belts that jump: `events.rows.jumps`.
 """
 
 from __future__ import annotations
