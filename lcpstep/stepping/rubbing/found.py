@@ -244,9 +244,11 @@ def interrupt(s: Strides, t: float, tau: float) -> None:
 def locate(s: Strides, g: int, h: float) -> float:
     """Time from now at which guard g acts, the step of that length being the last one made; or NOWHERE.
 
-    One that begins within its band, and below zero, acts where it is as far again; a force not before it is past it.
+    One that begins within its band, and below zero, acts where it is as far again; a force whose modes have been
+    decided for longer, by a look ahead, where it is past its band.
     """
-    zero = 0.0 if s.armed[g] == 1 else min(0.0 if is_motion(s, g) else -s.band[g], 2.0 * s.begin_value[g])
+    known = s.clock.t0 < s.decided and not is_motion(s, g)
+    zero = 0.0 if s.armed[g] == 1 else min(-s.band[g] if known else 0.0, 2.0 * s.begin_value[g])
     tau, slope, crossed = s.found * h, s.slope, s.end_value[g] < zero
     if tau <= 0.0:
         return 0.0
