@@ -100,9 +100,7 @@ def models(
 @functools.cache
 def _empty(n_q: int) -> kernels.Model:
     """A model that has neither forces nor rows."""
-    system = LinearSystem(np.eye(n_q))
-    scene = Scene(system=system, q0=np.zeros(n_q), v0=np.zeros(n_q), t_span=(0.0, 1.0))
-    return model(scene)
+    return model(Scene(LinearSystem(np.eye(n_q)), np.zeros(n_q), np.zeros(n_q), (0.0, 1.0)))
 
 
 def joint_model(scene: Scene) -> kernels.Model:
