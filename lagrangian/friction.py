@@ -36,9 +36,7 @@ from lagrangian.system import Harmonic
 LAWS = ("moreau", "newton", "stronge")
 Normals = Callable[[float, Array, Array, Array], Any]  # G (n_c, n_q) at a state t, q, v, p
 PARALLEL = 1e-12  # squared sine of the angle between normal and tangent, below which they are one direction
-ELSEWHERE = (
-    1e-3  # where a tangent is looked at beside the initial state, relative to the size of the coordinates
-)
+ELSEWHERE = 1e-3  # of the coordinates: where a tangent is looked at beside the initial state
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,9 +27,7 @@ LOOKS = 64  # states that are looked at
 SHARE, SHARE_LOCATED = 0.1, 1e-3
 STEPS, STEPS_LOCATED = 2.0, 0.01  # that an impact may be noticed too late, of the same
 ROUNDING = 1e-9  # of the coordinates, and of how far they could have gone: no depth
-ROUNDING_BESIDE = (
-    1e-12  # of how far others could have gone, in the metric of M: masses, springs, contacts couple
-)
+ROUNDING_BESIDE = 1e-12  # of how far others could have gone, in the metric of M: what couples them
 MANY = 100  # contacts: of more it is not asked whether they squeeze what lies between
 LONGEST = 10.0  # of the mean step: one of those that a tolerance has chosen
 

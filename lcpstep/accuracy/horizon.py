@@ -29,9 +29,7 @@ LOST = 0.1  # of the size of the motion: two trajectories that far apart have no
 SMALL, COARSE = 1e-9, 1e-3  # disturbance in units of the size; of methods that round impacts to a grid
 LOOKS = 4000
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # multiples of it, less what is whole, are all different
-EXPONENTIAL = (
-    0.75  # at half the time an exponential has reached the power 1/2 of its end, powers of t nearly all
-)
+EXPONENTIAL = 0.75  # at half the time an exponential has reached the power 1/2 of its end, others more
 
 
 @dataclass(frozen=True, eq=False)

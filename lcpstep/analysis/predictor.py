@@ -34,9 +34,7 @@ SOON = 3  # corrections after which dF/dp is computed anew
 FEW = 4  # corrections after which the step may grow
 GROWTH, SHRINK = 1.4, 0.5
 PARAMETER_STEP = 1e-5  # of the range, for the derivative by the parameter
-NEAREST = (
-    1e-9  # the same where the branch is hard to follow: near grazing, longer differences see other motions
-)
+NEAREST = 1e-9  # the same near grazing, where longer differences see other motions
 SPOILT = 10.0  # of such steps: a motion of another kind within that spoils it
 
 

@@ -33,9 +33,7 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 NODES, WEIGHTS = gauss(3)
 RULE = np.stack([NODES, WEIGHTS])
-SAFETY = (
-    2.0  # what is told of the errors found: motions may part a little, and nodes see no more than they see
-)
+SAFETY = 2.0  # times the errors found are told: motions may part a little, and nodes do not see all
 ROUNDING = 4e-14  # of the positions: what their second differences over a step, times h^2, may be off by
 JUMPS = float(Kind.IMPACT), float(Kind.ACCUMULATION), float(Kind.JAM)
 

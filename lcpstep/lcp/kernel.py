@@ -31,10 +31,7 @@ from lcpstep.rows import copy
 FEW = 8  # unknowns up to which exchanges without a guess are faster than Lemke's path
 EXCHANGES = 12  # exchanges of indices granted to a guess, and to Lemke's basis if the judge refuses it
 LAST_EXCHANGES = 100  # granted to the set of negative b where all else has failed
-SPREADING = (
-    4  # more of them per unknown, for what is violated by rounding may spread from row to row; at most
-)
-MOST = 200
+SPREADING, MOST = 4, 200  # more of them per unknown, for rounding may spread from row to row; at most
 STRICT = 1e-13  # residual at which nobody looks for a better answer; one within the tolerance may do at last
 ALMOST = 0.1  # of the tolerance: residual at which the path is not gone again for more unknowns than TINY
 STARTS, FEWEST_STARTS = 12, 2  # times that Lemke's method is started
@@ -42,10 +39,7 @@ STRIDE = 7919  # a prime that scatters them
 PER_SQUARE, THOROUGH = 25, 3_000_000_000  # the same of a thorough search, times n^2, and at most this by n^3
 PATIENT = 70_000_000_000_000  # or this by n^5: seconds where a search has a chance, up to a hundred unknowns
 LONGEST = 10_000_000_000  # pivots times n^2 after which it ends whatever is left: some ten seconds
-MULTIPLIER, MODULUS = (
-    48271,
-    2147483647,
-)  # pseudo-random numbers of S. Park and K. Miller, Comm. ACM 31 (1988) 1192
+MULTIPLIER, MODULUS = 48271, 2147483647  # pseudo-random numbers of S. Park and K. Miller, CACM 31 (1988) 1192
 SIXTHS = 6  # a start has one to six of them of all z
 SMALLEST_PIVOT, LARGER_PIVOT = 1e-11, 1e-8  # relative to the largest entry of a direction, in turn
 

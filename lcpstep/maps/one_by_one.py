@@ -69,9 +69,7 @@ def _several_periods(scene: Scene, method: Method, task: Task, x: Array, n: int)
     try:
         run = simulate(one, method, keep=ends)
     except SimulationError as error:
-        if (
-            error.trajectory.status == Status.DONE
-        ):  # no motion that fails, but a scene with a wrong derivative
+        if error.trajectory.status == Status.DONE:  # no motion fails: a derivative of the scene is wrong
             raise
         return None, int(error.trajectory.status)
     return (run if run.status == Status.DONE else None), int(run.status)

@@ -23,9 +23,7 @@ TOUCHING = 1e-9  # of the way that forces push in a step: likewise, where a moti
 UNTOLD = 4.0 * RESOLUTION  # of a time: its rounding, in which an obstacle moves on under a body
 TURNS = 200  # blows in a step of `Moreau` for each of its contacts; more go on in the next one
 LEFT = 1e-6  # of the fastest approach: what is slower ends in a plastic blow
-RETURNED = (
-    2.0**-40
-)  # of the fastest approach: blows that leave gap velocities this near to those of before go on for ever
+RETURNED = 2.0**-40  # of the fastest approach: blows that lead back so near to those before never end
 CONVERGED = 1e-12  # change of a velocity that is iterated for, relative to it
 CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be known better than these
 ROUNDING = 1e-13  # of these terms: what is left of it is no motion

@@ -57,9 +57,7 @@ from lcpstep.stepping.theta_method.row_impulses import (
     take_part,
 )
 
-SETTLED = (
-    6  # iterations after which impulses are looked for where the last ones were: there may be others as good
-)
+SETTLED = 6  # iterations after which impulses are sought where the last were: others may be as good
 UNDECIDED = 14  # iterations after which loads are shared by turns: contacts that bear nothing are left out
 
 
