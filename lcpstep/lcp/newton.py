@@ -44,21 +44,30 @@ def _newton(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> S
     error = residual(W, b, z)
     if error > tol:
         inner, steps = interior_point(W, b, factors)
-        polished, more = polish(W, b, inner, limit, factors)
+        polished, more = polish(W, b, inner, tol, limit, factors)
         used += steps + more
         z, error = best_of(W, b, z, polished)
     status = SOLVED if error <= tol else MAX_ITERATIONS if used >= limit else FAILED
     return Solution(z, W @ z + b, Status(status), used, error, "newton")
 
 
-def polish(W: Any, b: Any, z: Any, limit: int, factors: Factoriser) -> tuple[Any, int]:
-    """The best that exchanges make of an approximate answer, whose set may have a singular matrix."""
-    active, candidates, used = positive_set(W, b, z), [z], 0
-    for proximal in PROXIMAL:
-        answer, more = exchange(W, b, z, active, limit, factors, proximal)
-        candidates.append(answer)
-        used += more
-    return best_of(W, b, *candidates, np.zeros_like(z))[0], used  # solvers know zero to their tolerance
+def polish(W: Any, b: Any, z: Any, tol: float, limit: int, factors: Factoriser) -> tuple[Any, int]:
+    """The best that exchanges make of an approximate answer, whose set may have a singular matrix.
+
+    From z, near which a solution is; where the judge refuses that, from zero: unknowns that hang on each other alone
+    and have no b stay exactly zero then, where proximal steps from z leave numbers that are all of their rows.
+    """
+    active, best, used = positive_set(W, b, z), z, 0
+    for first in (z, np.zeros_like(z)):
+        candidates = [best, np.zeros_like(z)]  # solvers know zero to their tolerance
+        for proximal in PROXIMAL:
+            answer, more = exchange(W, b, first, active, limit, factors, proximal)
+            candidates.append(answer)
+            used += more
+        best, error = best_of(W, b, *candidates)
+        if error <= tol:
+            break
+    return best, used
 
 
 def exchange(

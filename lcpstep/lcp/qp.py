@@ -87,7 +87,7 @@ def quadratic(name: str, W: Any, b: Any, z: Any, tol: float, max_iterations: int
     found = call_solver(name, scaled(W, d), d * b, z / d, max_iterations)
     raw = np.zeros_like(b) if found is None else np.maximum(found * d, 0.0)
     with np.errstate(all="ignore"):  # a diverging attempt may overflow; the judge sees to it
-        polished, used = polish(W, b, raw, EXCHANGES, factoriser(W))
+        polished, used = polish(W, b, raw, tol, EXCHANGES, factoriser(W))
         best, error = best_of(W, b, polished)
     status = SOLVED if error <= tol else FAILED
     return explained(W, b, Solution(best, W @ best + b, Status(status), used, error, f"qp:{name}"))

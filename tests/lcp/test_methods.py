@@ -56,6 +56,25 @@ def test_quadratic_programme_of_what_needs_no_impulse(method):
 
 
 @pytest.mark.parametrize("method", QP)
+@pytest.mark.parametrize(
+    ("b", "solution"),
+    [
+        ([-2.0, 2.0, 2.0, 0.0], [1.0, 0.0, 0.0, 0.0]),
+        ([-1.0, 1.0, 0.0, 1.0, -1.0], [0.5, 0.0, 0.0, 0.0, 0.5]),
+        ([-1.0, -1.0, -2.0, 2.0, 2.0, 1.0, 0.0, 0.0], [1.8, 2.6, 2.4, 0.2, 0.0, 0.0, 0.0, 0.0]),
+    ],
+)
+def test_quadratic_programme_with_parts_that_nothing_drives(method, b, solution):
+    """What was left of their zeros was all that their rows consisted of, and was refused."""
+    solver_or_skip(method)
+    n = len(b)
+    W = 2.0 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
+    s = solve_lcp(W, np.array(b), method)
+    assert s.solved
+    assert s.z == pytest.approx(np.array(solution), abs=1e-14)
+
+
+@pytest.mark.parametrize("method", QP)
 @pytest.mark.parametrize("n", [1, 2, 10, 40])
 @pytest.mark.parametrize("rank", [1.0, 0.5])
 def test_quadratic_programme_reaches_its_accuracy(method, n, rank):
