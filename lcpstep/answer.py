@@ -11,8 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 
-def asked(t: ArrayLike, start: float, end: float) -> Array:
-    """Times at which states are asked for, (m,); ValueError where they are none within the run."""
+def asked(t: ArrayLike, known: Array) -> Array:
+    """Times at which states are asked for, (m,); ValueError where they are none within those known of the run."""
+    if len(known) == 0:
+        raise ValueError("t: no state of this run was kept")
+    start, end = known[0], known[-1]
     try:
         times = np.atleast_1d(np.asarray(t, dtype=float))
     except (TypeError, ValueError):

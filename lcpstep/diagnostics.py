@@ -105,14 +105,13 @@ def energy(trajectory: Trajectory) -> Energy:
     (0, True)
     """
     checks.instance("trajectory", trajectory, Trajectory)
+    if len(trajectory.t) == 0:
+        raise ValueError("trajectory: expected a run of which states are kept")
     scene, m = trajectory.scene, trajectory
     kinetic, potential = _states(scene, m.t, m.q, m.v)
     work, damping = _powers(m)
-    if isinstance(scene.system, LinearSystem):
-        change = np.zeros(len(work))
-    else:  # the forces of a general system include those with a potential
-        change = np.diff(potential)
-    work = work + change
+    if not isinstance(scene.system, LinearSystem):
+        work = work + np.diff(potential)  # its forces include those with a potential
     obstacles, held = _obstacles(m)
     friction, impacts = _friction(m), _contacts(m)
     change = np.diff(kinetic + potential) - work + damping

@@ -78,6 +78,9 @@ class Kind(IntEnum):
     JAM = 7
 
 
+BLOWS = (Kind.IMPACT, Kind.JAM)  # at which velocities jump
+
+
 # time [s], contact, gap velocity before and after [m/s], impulse [N s], kind (a `Kind`)
 IMPACT_DTYPE = np.dtype(
     [
@@ -165,7 +168,7 @@ class Trajectory(Answer):
         ------
         ValueError   t has two dimensions, or a time lies outside the run or between states that were not kept
         """
-        q, v = self.dense(asked(t, self.t[0], self.t[-1]))
+        q, v = self.dense(asked(t, self.t))
         return (q[0], v[0]) if np.ndim(t) == 0 else (q, v)
 
     @property

@@ -85,11 +85,24 @@ def test_files_of_every_kind(run, tmp_path):
 
     gif = run.animate(tmp_path / "ball.gif", **SHORT)
     with Image.open(gif) as image:
-        assert image.n_frames == 2
+        assert image.n_frames == 3
         assert image.info["duration"] == 100
     page = run.animate(tmp_path / "ball.html", **SHORT).read_text()
-    assert page.count("iVBORw0KGgo") == 2  # how a PNG begins
+    assert page.count("iVBORw0KGgo") == 3  # how a PNG begins
     assert "iVBORw0KGgo" in run.animate(**SHORT)._repr_html_()
+
+
+@pytest.mark.parametrize(("fps", "seconds"), [(10, 0.3), (24, 0.25), (30, 0.3), (60, 0.2), (120, 0.1)])
+def test_a_gif_plays_as_fast_as_it_says(run, tmp_path, fps, seconds):
+    """Its pictures last whole hundredths of a second, and players do not keep up with less than two."""
+    from PIL import Image
+
+    made = run.animate(seconds=seconds, fps=fps)
+    assert np.diff(made.times) * fps == pytest.approx(made.speed, rel=1e-12)
+    with Image.open(made.save(tmp_path / "ball.gif")) as image:
+        shown = [image.info["duration"] for k in range(image.n_frames) if image.seek(k) is None]
+    assert sum(shown) == pytest.approx(1000.0 * (seconds + 1.0 / fps), abs=20.0)
+    assert min(shown) >= 20
 
 
 @pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="no ffmpeg here")
@@ -106,7 +119,7 @@ def test_mp4_is_written_by_what_is_called_ffmpeg(run, tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
     height, width, _ = next(run.animate(**SHORT).frames()).shape
     file = run.animate(tmp_path / "ball.mp4", **SHORT)
-    assert file.stat().st_size == 2 * (width // 2 * 2) * (height // 2 * 2) * 3
+    assert file.stat().st_size == len(run.animate(**SHORT).times) * (width // 2 * 2) * (height // 2 * 2) * 3
     tool.write_text("#!/bin/sh\ncat > /dev/null\necho Unknown codec >&2\nexit 1\n")
     with pytest.raises(LcpStepError, match="ffmpeg failed: Unknown codec; write"):
         run.animate(tmp_path / "other.mp4", **SHORT)
@@ -163,9 +176,9 @@ def test_the_picture_has_the_proportions_of_what_moves(run):
 def test_own_drawings_systems_with_modes_and_loaded_runs(run, tmp_path):
     own = replace(run.scene, drawing=ball_above)
     mine = simulate(own, Located(0.01)).animate(**SHORT)
-    assert [x.shape for x in mine.frames()] == 2 * [(378, 560, 3)]
+    assert [x.shape for x in mine.frames()] == 3 * [(378, 560, 3)]
     modes = simulate(scenes.stick_slip_oscillator(t_end=9.0), EventDriven(1e-8, 1e-8))
-    assert len(list(modes.animate(**SHORT).frames())) == 2
+    assert len(list(modes.animate(**SHORT).frames())) == 3
     back = load(run.save(tmp_path / "run.nc"))
     pictures = zip(back.animate(**SHORT).frames(), run.animate(**SHORT).frames(), strict=True)
     assert all(np.array_equal(a, b) for a, b in pictures)

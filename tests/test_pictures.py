@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from lagrangian import scenes
-from lcpstep import EventDriven, simulate
+from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, energy, simulate
 from lcpstep.accuracy.work_precision import Level, Study
 from lcpstep.cli import own, parser
 from lcpstep.cli.common import DONE
@@ -57,6 +57,56 @@ def test_impulses_stand_on_a_line_over_the_whole_time():
     assert not impulse.texts
     lines = [x for x in impulse.get_lines() if x.get_linestyle() == "-" and list(x.get_ydata()) == [0.0, 0.0]]
     assert [0, 1] in [list(line.get_xdata()) for line in lines]  # of the panel's width
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-2), Located(1e-2, order=4)])
+def test_velocities_are_drawn_up_to_their_impacts(method):
+    """A ball strikes with sqrt(2 g h), and its velocity jumps upright."""
+    motion = simulate(scenes.bouncing_ball(h0=0.02, t_end=20.0), method)
+    line = motion.plot().axes[1].get_lines()[0]
+    t, v = line.get_data()
+    assert v.min() == pytest.approx(-np.sqrt(2.0 * 9.81 * 0.02), rel=1e-9)
+    up = np.argmax(np.diff(v))
+    assert t[up + 1] - t[up] < 1e-9
+
+
+def test_no_line_joins_states_between_which_none_is_known():
+    """At impacts a ball is at the height 0: a line through these states alone would be a ball that never rises."""
+    for method, keep in ((Moreau(1e-2), "impacts"), (EventDriven(), 7), (Located(1e-2), [0.1, 0.2, 0.9])):
+        motion = simulate(scenes.bouncing_ball(t_end=1.0), method, keep=keep)
+        position, *_ = motion.plot().axes
+        (points,) = position.get_lines()
+        assert points.get_linestyle() == "None"
+        assert points.get_marker() != "None"
+        np.testing.assert_array_equal(points.get_xydata(), np.column_stack([motion.t, motion.q]))
+
+
+def test_curves_and_modes_of_a_system_with_modes_go_over_the_whole_run():
+    """Between switches beyond the last kept state too, where the state is known; the mode jumps at its switches."""
+    motion = simulate(scenes.stick_slip_oscillator(), EventDriven(), keep=[0.5, 1.0])
+    first, *_, mode = motion.plot().axes
+    t, x = first.get_lines()[0].get_data()
+    assert (t[0], t[-1]) == motion.scene.t_span
+    assert np.max(np.diff(t)) < 0.02
+    np.testing.assert_array_equal(x, motion.at(t)[:, 0])
+    assert set(motion.switches.time) <= set(mode.get_lines()[0].get_xdata())
+
+
+def test_a_run_that_kept_no_state_has_a_picture_of_its_impulses():
+    def stops(t):
+        raise KeyboardInterrupt
+
+    scene = scenes.bouncing_ball(t_end=50.0)
+    with pytest.raises(SimulationInterrupted) as stopped:
+        simulate(scene, Moreau(1e-5), keep=[50.0], progress=stops)
+    motion = stopped.value.trajectory
+    assert len(motion.t) == 0
+    position, *_ = motion.plot().axes
+    assert len(position.get_lines()[0].get_xdata()) == 0
+    with pytest.raises(ValueError, match="t: no state of this run was kept"):
+        motion.at(0.0)
+    with pytest.raises(ValueError, match="trajectory: expected a run of which states are kept"):
+        energy(motion)
 
 
 def test_names_of_modes_cover_no_curve():

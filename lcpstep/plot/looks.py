@@ -19,6 +19,11 @@ def mark(k: int) -> str:
     return MARKS[k % len(MARKS)]
 
 
+def points(k: int) -> dict[str, Any]:
+    """Colour and marks of the k-th of several sets of points that no line joins."""
+    return {"color": f"C{k % 10}", "ls": "none", "marker": mark(k), "ms": 3.0}
+
+
 def shades(n: int) -> Any:
     """Colours (n, 3) of n areas, from dark to light, so that they differ without their hues."""
     import numpy as np

@@ -5,7 +5,7 @@ The layout is that of G. Osorio, Complex Behavior in Impacting Systems, Figs 3.4
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,9 +16,10 @@ from lcpstep.accuracy.compare import Comparison
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.plot import looks
 from lcpstep.plot.words import method_words
-from lcpstep.trajectory import Kind, Trajectory
+from lcpstep.trajectory import BLOWS, Trajectory
 
 SAMPLES = 4000  # of a curve
+MOMENT = 1e-12  # of a span: more than rounding makes of the time of an impact
 DECADES = 1e-5  # how far below its maximum the distance of two motions is drawn
 JUMPS = "0.75"  # colour of the velocity jumps
 BAND = 0.3  # how much the band of an error bar covers
@@ -69,13 +70,11 @@ def portrait(ax: Any, run: Trajectory, coordinate: int = 0) -> None:
     """One coordinate's path in the plane (q, v); velocity jumps in grey."""
     checks.has("ax", ax, "plot", "axes of matplotlib")
     checks.instance("run", run, Trajectory)
-    jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
-    before = np.nextafter(jumps.time, run.t[0])
-    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t, jumps.time, before]))
-    q, v = run.at(t)
-    q, v = q[:, coordinate].copy(), v[:, coordinate].copy()
+    jumps = run.impacts.time[np.isin(run.impacts.kind, BLOWS)]
+    t = _times(run.t, jumps)
+    q, v = (x[:, coordinate] for x in run.at(t))
     # The path is broken where it jumps, and the jump drawn as a line of its own.
-    landed = np.searchsorted(t, jumps.time)
+    landed = np.flatnonzero(np.isin(t, jumps))
     landed = landed[landed > 0]
     ax.plot([q[landed - 1], q[landed]], [v[landed - 1], v[landed]], color=JUMPS, lw=0.6)
     ax.plot(np.insert(q, landed, np.nan), np.insert(v, landed, np.nan), "C0-", lw=0.7)
@@ -94,13 +93,13 @@ def overview(run: Trajectory | HybridTrajectory) -> Any:
         return _states_and_mode(run)
     figure = Figure(figsize=(10, 7), layout="constrained")
     position, velocity, impulse = figure.subplots(3, 1, sharex=True)
-    t, states = _curves(run)
+    t, states, look = _curves(run)
     n, labels = run.scene.n_q, run.scene.labels
     for which, (ax, x, own) in enumerate(
         zip((position, velocity), states, (labels[:n], labels[n:]), strict=True)
     ):
         for k, values in enumerate(x.T):
-            ax.plot(t, values, **looks.line(k))
+            ax.plot(t, values, **look(k))
         unit = common_unit(own)
         what = QUANTITIES.get(common_unit(labels[:n]), ("position", "velocity"))[which]
         ax.set_ylabel(own[0] if n == 1 else f"{what} [{unit}]" if unit else what)
@@ -129,18 +128,31 @@ def band(ax: Any, run: Trajectory, which: int, bar: Any) -> None:
         ax.axvline(run.error.until, color="0.5", lw=0.8, ls=":")
 
 
-def _curves(run: Trajectory) -> tuple[Any, tuple[Any, Any]]:
-    """Times, and states at them: close to each other, or the kept ones alone where no others are known."""
-    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t]))
+def _times(known: Any, jumps: Any) -> Any:
+    """Times close to each other, those of the kept states, and of each jump a moment before it and its own."""
+    if len(known) == 0:
+        return known
+    start, end = known[0], known[-1]
+    jumps = jumps[(jumps > start) & (jumps <= end)]
+    before = np.minimum(np.nextafter(jumps, start), jumps - MOMENT * (end - start))
+    sides = jumps, np.maximum(before, start)
+    return np.unique(np.concatenate([np.linspace(start, end, SAMPLES), known, *sides]))
+
+
+def _curves(run: Trajectory | HybridTrajectory) -> tuple[Any, Any, Callable[[int], dict[str, Any]]]:
+    """Times, states at them, and looks: lines, or marks of the kept states where none are known in between."""
+    modes = isinstance(run, HybridTrajectory)
+    logs = [log.time for log in (run.impacts, run.switches if modes else None) if log is not None]
     try:
-        return t, run.at(t)
+        t = _times(run.pieces.t if modes else run.t, np.concatenate(logs))
+        return t, run.at(t), looks.line
     except ValueError:  # what `at` raises between states of which some were not kept
-        return run.t, (run.q, run.v)
+        return run.t, run.x if modes else (run.q, run.v), looks.points
 
 
 def _impulses(ax: Any, run: Trajectory | HybridTrajectory) -> None:
     """The impulse of every impact, one colour a contact."""
-    jumps = run.impacts[run.impacts.kind == Kind.IMPACT]
+    jumps = run.impacts[np.isin(run.impacts.kind, BLOWS)]
     stems = []
     for contact in np.unique(jumps.contact):
         own = jumps[jumps.contact == contact]
@@ -182,18 +194,14 @@ def _states_and_mode(run: HybridTrajectory) -> Any:
     n, names, met = run.scene.n_x, run.scene.system.names, run.impacts is not None
     figure = Figure(figsize=(10, 1.0 + 2.1 * (n + 1 + met)), layout="constrained")
     axes = figure.subplots(n + 1 + met, 1, sharex=True)
-    jumps = np.nextafter(run.switches.time, run.t[0])
-    t = np.unique(np.concatenate([np.linspace(run.t[0], run.t[-1], SAMPLES), run.t, jumps]))
-    try:
-        x = run.at(t)
-    except ValueError:  # what `at` raises between states of which some were not kept
-        t, x = run.t, run.x
-    modes = run.mode_at(t)
+    t, x, look = _curves(run)
     for ax, values, label in zip(axes, x.T, run.scene.labels, strict=False):
-        ax.plot(t, values, lw=1.0)
+        ax.plot(t, values, **look(0))
         ax.set_ylabel(label)
     if met:
         _impulses(axes[n], run)
+    t = np.unique(np.concatenate([run.pieces.t[[0, -1]], run.switches.time]))
+    modes = run.mode_at(t)
     seen = [name for name in names if name in set(modes.tolist())]
     axes[-1].step(t, [seen.index(str(name)) for name in modes], where="post", lw=1.0)
     axes[-1].set(yticks=range(len(seen)), yticklabels=seen, ylabel="mode", xlabel="time t [s]")

@@ -101,7 +101,7 @@ class HybridTrajectory(Answer):
 
     def _rows(self, t: ArrayLike) -> tuple[Array, NDArray[np.intp]]:
         s = self.pieces
-        times = asked(t, s.t[0], s.t[-1])
+        times = asked(t, s.t)
         return times, np.searchsorted(s.t, times, side="right") - 1
 
     def __repr__(self) -> str:
