@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lcpstep.trajectory import BLOWS, Kind, Trajectory
+from lcpstep.trajectory import Kind, Trajectory, blows
 
 Array = NDArray[np.float64]
 WIDTH, HEIGHT, COLUMNS = 240, 44, 240  # of the picture [px], and values along it
@@ -70,7 +70,7 @@ def sparkline(t: Array, x: Array, marks: Array) -> str:
 def _marks(run: Any) -> Array:
     """Times of impacts, or of switches."""
     if isinstance(run, Trajectory):
-        return np.asarray(run.impacts.time[np.isin(run.impacts.kind, BLOWS)])
+        return np.asarray(blows(run.impacts).time)
     return np.asarray(run.switches.time)
 
 

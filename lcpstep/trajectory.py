@@ -78,9 +78,6 @@ class Kind(IntEnum):
     JAM = 7
 
 
-BLOWS = (Kind.IMPACT, Kind.JAM)  # at which velocities jump
-
-
 # time [s], contact, gap velocity before and after [m/s], impulse [N s], kind (a `Kind`)
 IMPACT_DTYPE = np.dtype(
     [
@@ -92,6 +89,11 @@ IMPACT_DTYPE = np.dtype(
         ("kind", "i4"),
     ]
 )
+
+
+def blows(log: Any) -> Any:
+    """The rows of a log at which velocities jump."""
+    return log[np.isin(log.kind, (Kind.IMPACT, Kind.JAM))]
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from lagrangian.drawing import Circle, Drawing, Point, Polygon, Shape, drawn, ex
 from lcpstep.errors import LcpStepError, NotWritten
 from lcpstep.files import file_path, replacing
 from lcpstep.plot.player import page
-from lcpstep.trajectory import BLOWS
+from lcpstep.trajectory import blows
 
 Pixels = NDArray[np.uint8]  # (height, width, 3)
 SHORTEST, LONGEST = 3.0, 8.0  # of a film whose length nobody has chosen [s]
@@ -106,7 +106,7 @@ class Film:
         """How bright each contact shines in each picture, (frames, n_c) in [0, 1]."""
         glow = np.zeros((len(self.times), getattr(self.run.scene, "n_c", 0)))
         log = getattr(self.run, "impacts", None)
-        struck = [] if log is None else log[np.isin(log.kind, BLOWS) & (log.impulse > 0.0)]
+        struck = [] if log is None else [x for x in blows(log) if x.impulse > 0.0]
         strongest = max((float(x.impulse) for x in struck), default=0.0)
         for x in struck:
             since = (self.times - x.time) / self.speed

@@ -16,7 +16,7 @@ from lcpstep.accuracy.compare import Comparison
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.plot import looks
 from lcpstep.plot.words import method_words
-from lcpstep.trajectory import BLOWS, Trajectory
+from lcpstep.trajectory import Trajectory, blows
 
 SAMPLES = 4000  # of a curve
 MOMENT = 1e-12  # of a span: more than rounding makes of the time of an impact
@@ -70,7 +70,7 @@ def portrait(ax: Any, run: Trajectory, coordinate: int = 0) -> None:
     """One coordinate's path in the plane (q, v); velocity jumps in grey."""
     checks.has("ax", ax, "plot", "axes of matplotlib")
     checks.instance("run", run, Trajectory)
-    jumps = run.impacts.time[np.isin(run.impacts.kind, BLOWS)]
+    jumps = blows(run.impacts).time
     t = _times(run.t, jumps)
     q, v = (x[:, coordinate] for x in run.at(t))
     # The path is broken where it jumps, and the jump drawn as a line of its own.
@@ -152,7 +152,7 @@ def _curves(run: Trajectory | HybridTrajectory) -> tuple[Any, Any, Callable[[int
 
 def _impulses(ax: Any, run: Trajectory | HybridTrajectory) -> None:
     """The impulse of every impact, one colour a contact."""
-    jumps = run.impacts[np.isin(run.impacts.kind, BLOWS)]
+    jumps = blows(run.impacts)
     stems = []
     for contact in np.unique(jumps.contact):
         own = jumps[jumps.contact == contact]
