@@ -103,15 +103,12 @@ def places(shape: Shape, where: str = "") -> Array:
     except (TypeError, ValueError):
         result = np.zeros((0, 0))
     sound = result.ndim == 2 and result.shape[1] == 2 and bool(np.all(np.isfinite(result)))
+    more = ""
     if isinstance(shape, Circle):
-        sound = (
-            sound
-            and isinstance(shape.radius, (int, float))
-            and math.isfinite(shape.radius)
-            and shape.radius > 0.0
-        )
+        r, more = shape.radius, ", and a finite radius above zero"
+        sound = sound and isinstance(r, (int, float, np.integer, np.floating)) and 0.0 < r < math.inf
     if not sound:
-        raise ValueError(f"drawing: expected places (x, y) of finite numbers, got {shape!r} {where}")
+        raise ValueError(f"drawing: expected places (x, y) of finite numbers{more}, got {shape!r} {where}")
     return result
 
 

@@ -19,3 +19,12 @@ def units(labels: tuple[str, ...]) -> tuple[str, str]:
     """Units of the coordinates and of the velocities among a scene's labels; "own units" where they share none."""
     n = len(labels) // 2
     return common_unit(labels[:n]) or "own units", common_unit(labels[n:]) or "own units"
+
+
+def length_unit(labels: tuple[str, ...]) -> str:
+    """The unit of length among those of named coordinates, "mm" of "x [mm]"; metres where they name none, or several.
+
+    Angles leave the unit of lengths open.
+    """
+    found = {label.partition("[")[2].rstrip("]") for label in labels} - {"", "rad", "deg", "°"}
+    return found.pop() if len(found) == 1 else "m"

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from lagrangian.labels import common_unit
+from lagrangian.labels import common_unit, length_unit
 from lagrangian.scenes import SCENES
 from lcpstep import dataset, functions
 from lcpstep.described import COLUMNS, Builder, Describer
@@ -262,8 +262,11 @@ def _units(scene: Any) -> dict[str, str]:
     n = getattr(scene, "n_q", None)
     if n is None:
         return UNITS
-    own = {"q": scene.labels[:n], "v": scene.labels[n:]}
-    return UNITS | {name: common_unit(labels) or ", ".join(labels) for name, labels in own.items()}
+    own, length = {"q": scene.labels[:n], "v": scene.labels[n:]}, length_unit(scene.coordinates)
+    known = UNITS
+    if length != "m":  # the unit of forces is not known, then
+        known = {name: x.replace("m/s", f"{length}/s") for name, x in UNITS.items() if x != "N s"}
+    return known | {name: common_unit(labels) or ", ".join(labels) for name, labels in own.items()}
 
 
 def _dimensions(name: str, x: np.ndarray, lengths: dict[str, int]) -> tuple[str, ...]:

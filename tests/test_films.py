@@ -184,6 +184,27 @@ def test_own_drawings_systems_with_modes_and_loaded_runs(run, tmp_path):
     assert all(np.array_equal(a, b) for a, b in pictures)
 
 
+def test_axes_have_the_unit_of_the_coordinates(run, monkeypatch):
+    from matplotlib.axes import Axes
+
+    said = []
+    monkeypatch.setattr(
+        Axes, "set_aspect", lambda ax, *_, **__: said.append((ax.get_xlabel(), ax.get_ylabel()))
+    )
+    for names in ((), ["height [mm]"]):
+        own = simulate(replace(run.scene, coordinates=names), Located(0.01), keep=[0.0, 0.1])
+        next(own.animate(seconds=0.1, fps=10).frames())
+    assert said == [("x [m]", "y [m]"), ("x [mm]", "y [mm]")]
+
+
+def test_a_radius_is_any_real_number():
+    for r in (1, 1.0, np.float32(1.0), np.int64(1)):
+        assert drawing.extent(Circle((0.0, 0.0), r)) == (-1.0, -1.0, 1.0, 1.0)
+    for r in (0.0, -1.0, np.nan, np.inf, "1", None):
+        with pytest.raises(ValueError, match="of finite numbers, and a finite radius above zero, got Circle"):
+            drawing.extent(Circle((0.0, 0.0), r))
+
+
 def test_models_draw_nothing_themselves():
     program = "import sys, lagrangian; lagrangian.scenes.bouncing_ball(); print('matplotlib' in sys.modules)"
     assert python(program) == "False"

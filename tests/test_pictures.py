@@ -3,11 +3,12 @@
 import argparse
 import itertools
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from lagrangian import scenes
+from lagrangian import labels, scenes
 from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, energy, simulate
 from lcpstep.accuracy.work_precision import Level, Study
 from lcpstep.cli import own, parser
@@ -107,6 +108,19 @@ def test_a_run_that_kept_no_state_has_a_picture_of_its_impulses():
         motion.at(0.0)
     with pytest.raises(ValueError, match="trajectory: expected a run of which states are kept"):
         energy(motion)
+
+
+def test_lengths_in_millimetres_are_called_so_everywhere():
+    """The film's axes, the log's velocities; impulses are in N s only where lengths are in metres."""
+    ball = scenes.bouncing_ball(t_end=0.1)
+    for names, unit in (((), "m"), (["height [mm]"], "mm"), (["angle [rad]"], "m")):
+        motion = simulate(replace(ball, coordinates=names), EventDriven())
+        data, metres = motion.to_xarray(), unit == "m"
+        assert data.impact_before.attrs["units"] == f"{unit}/s"
+        assert data.impact_impulse.attrs.get("units") == ("N s" if metres else None)
+        assert motion.plot().axes[2].get_ylabel() == ("impulse [N s]" if metres else "impulse")
+    assert labels.length_unit(("x [mm]", "y [mm]", "angle [rad]")) == "mm"
+    assert labels.length_unit(("x [mm]", "y [m]")) == "m"
 
 
 def test_names_of_modes_cover_no_curve():

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import checks
-from lagrangian.labels import common_unit
+from lagrangian.labels import common_unit, length_unit
 from lcpstep.accuracy.compare import Comparison
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.plot import looks
@@ -168,7 +168,8 @@ def _impulses(ax: Any, run: Trajectory | HybridTrajectory) -> None:
         ax.set_yticks([])
     if run.scene.n_c > 1:
         _legend(ax, stems, [f"contact {c}" for c in np.unique(jumps.contact)])
-    ax.set_ylabel("impulse [N s]")
+    metres = length_unit(getattr(run.scene, "coordinates", ())) == "m"
+    ax.set_ylabel("impulse [N s]" if metres else "impulse")
 
 
 def _legend(ax: Any, handles: Any, names: Sequence[str]) -> None:
