@@ -108,6 +108,9 @@ def test_a_run_that_kept_no_state_has_a_picture_of_its_impulses():
         motion.at(0.0)
     with pytest.raises(ValueError, match="trajectory: expected a run of which states are kept"):
         energy(motion)
+    with pytest.raises(SimulationInterrupted) as stopped:
+        simulate(scenes.stick_slip_oscillator(t_end=2e5), EventDriven(), keep=[2e5], progress=stops)
+    assert " 0 states, " in repr(stopped.value.trajectory)
 
 
 def test_lengths_in_millimetres_are_called_so_everywhere():

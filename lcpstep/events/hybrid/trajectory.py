@@ -106,8 +106,9 @@ class HybridTrajectory(Answer):
 
     def __repr__(self) -> str:
         met = f"{len(self.impacts)} events of contacts, " if self.impacts is not None else ""
+        span = f"t = {self.t[0]:g} .. {self.t[-1]:g}, " if len(self.t) else ""
         return (
-            f"HybridTrajectory({self.scene.name}, {self.method}, t = {self.t[0]:g} .. {self.t[-1]:g}, "
+            f"HybridTrajectory({self.scene.name}, {self.method}, {span}"
             f"{len(self.t)} states, {len(self.switches)} switches, {met}{self.status.name})"
         )
 
