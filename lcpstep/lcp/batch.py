@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lcpstep.lcp.dense import many
-from lcpstep.lcp.problem import as_array, check_finite, check_tolerance
+from lcpstep.lcp.problem import as_array, check_finite, limits
 from lcpstep.lcp.status import ENOUGH, NOT_FINITE, PER_UNKNOWN, SOLVED, TOLERANCE
 
 
@@ -58,7 +58,7 @@ def solve_lcp_batch(
     """
     b = as_array(b, "b", 2)
     W = as_array(W, "W", 2 if np.ndim(W) == 2 else 3)
-    check_tolerance(tol)
+    max_iterations = limits(tol, max_iterations)
     m, n = b.shape
     if W.shape not in ((n, n), (m, n, n)):
         raise ValueError(f"W must be of shape {(m, n, n)} or {(n, n)} to match b, not {W.shape}")

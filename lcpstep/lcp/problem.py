@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from lagrangian import checks
 from lcpstep.lcp.judged import residual
 from lcpstep.lcp.status import SOLVED, Status
 
@@ -133,10 +134,15 @@ def check_finite(W: Any, b: Any) -> None:
             raise ValueError(f"{name} contains NaN or infinity")
 
 
-def check_tolerance(tol: float) -> None:
-    """ValueError unless an answer can be within this tolerance."""
-    if not tol >= 0.0:
+def limits(tol: float, max_iterations: int | None) -> int | None:
+    """How many iterations can be made, None if nobody says; ValueError unless an answer can be within `tol`."""
+    try:
+        possible = tol >= 0.0
+    except TypeError:
+        possible = False
+    if not possible:
         raise ValueError(f"tol must be a number >= 0, not {tol!r}")
+    return None if max_iterations is None else checks.count("max_iterations", max_iterations, least=0)
 
 
 def as_guess(guess: Any, n: int) -> Any:

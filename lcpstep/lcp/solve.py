@@ -13,7 +13,7 @@ from lcpstep.lcp.automatic import automatic, dense
 from lcpstep.lcp.dense import enumeration, is_checked, pivoting
 from lcpstep.lcp.newton import newton
 from lcpstep.lcp.pgs import pgs
-from lcpstep.lcp.problem import Solution, as_arrays, as_guess, check_tolerance
+from lcpstep.lcp.problem import Solution, as_arrays, as_guess, limits
 from lcpstep.lcp.qp import DEFAULT, known_solvers, parse, quadratic, require_solver, unpolished
 from lcpstep.lcp.status import TOLERANCE, Status
 
@@ -69,7 +69,7 @@ def solve_lcp(
     """
     if not is_checked(W, b):
         W, b = as_arrays(W, b)
-    check_tolerance(tol)
+    max_iterations = limits(tol, max_iterations)
     n = len(b)
     z = np.zeros(n) if guess is None else as_guess(guess, n)
     if n == 0:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+from lcpstep import EventDriven, Located
 from lcpstep.errors import MissingSolver, UnknownName
 from lcpstep.lcp import LCP, Solution, residual, solve_lcp, solve_lcp_batch
 
@@ -123,12 +124,26 @@ def test_batch_names_bad_arguments():
     assert solve_lcp_batch(np.ones((0, 3, 3)), np.ones((0, 3))).z.shape == (0, 3)
 
 
-@pytest.mark.parametrize("tol", [-1.0, np.nan])
+@pytest.mark.parametrize("tol", [-1.0, np.nan, "tight", None])
 def test_tolerances_that_nothing_can_meet_are_named(tol):
     with pytest.raises(ValueError, match=r"^tol "):
         solve_lcp(W, b, tol=tol)
     with pytest.raises(ValueError, match=r"^tol "):
         solve_lcp_batch(W, b[None], tol=tol)
+
+
+@pytest.mark.parametrize("most", [-1, 2.5, True, "many", np.nan])
+@pytest.mark.parametrize("method", ["lemke", "auto", "newton", "pgs", "qp", "enumeration"])
+def test_numbers_of_iterations_that_are_none_are_named(most, method):
+    with pytest.raises(ValueError, match=r"^max_iterations: expected an integer >= 0"):
+        solve_lcp(W, b, method, max_iterations=most)
+    with pytest.raises(ValueError, match=r"^max_iterations: expected an integer >= 0"):
+        solve_lcp_batch(W, b[None], max_iterations=most)
+
+
+def test_a_million_may_be_written_as_a_float():
+    assert solve_lcp(W, b, "pgs", max_iterations=1e6).solved
+    assert EventDriven(max_events=1e6).max_events == Located(1e-3, max_events=1e6).max_events == 10**6
 
 
 def test_lists_are_judged_beside_a_sparse_matrix():
