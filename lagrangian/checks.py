@@ -124,16 +124,14 @@ def restitution(value: ArrayLike, n_c: int) -> Array:
     return r
 
 
-def count(name: str, value: Any, least: int = 1) -> int:
-    """A whole number from `least` on that kernels can count to; 1e6 is one."""
+def count(name: str, value: Any) -> int:
+    """A positive integer that kernels can count to; 1e6 is one."""
     try:
         result = int(value) if isinstance(value, float) and value.is_integer() else operator.index(value)
     except TypeError:
-        result = least - 1
-    if result < least or isinstance(value, bool):
-        raise ValueError(
-            f"{name}: expected {'a positive integer' if least else 'an integer >= 0'}, got {value!r}"
-        )
+        result = 0
+    if result < 1 or isinstance(value, bool):
+        raise ValueError(f"{name}: expected a positive integer, got {value!r}")
     if result > LARGEST:
         raise ValueError(f"{name}: expected an integer of at most {LARGEST}, got {value!r}")
     return result

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lagrangian import checks
 from lcpstep.lcp.judged import residual
 from lcpstep.lcp.status import SOLVED, Status
 
@@ -142,7 +141,15 @@ def limits(tol: float, max_iterations: int | None) -> int | None:
         possible = False
     if not possible:
         raise ValueError(f"tol must be a number >= 0, not {tol!r}")
-    return None if max_iterations is None else checks.count("max_iterations", max_iterations, least=0)
+    if max_iterations is None:
+        return None
+    try:
+        most = int(max_iterations)
+    except (TypeError, ValueError, OverflowError):
+        most = -1
+    if most < 0 or most != max_iterations or isinstance(max_iterations, bool):
+        raise ValueError(f"max_iterations must be an integer >= 0, not {max_iterations!r}")
+    return most
 
 
 def as_guess(guess: Any, n: int) -> Any:

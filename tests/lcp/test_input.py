@@ -135,9 +135,9 @@ def test_tolerances_that_nothing_can_meet_are_named(tol):
 @pytest.mark.parametrize("most", [-1, 2.5, True, "many", np.nan])
 @pytest.mark.parametrize("method", ["lemke", "auto", "newton", "pgs", "qp", "enumeration"])
 def test_numbers_of_iterations_that_are_none_are_named(most, method):
-    with pytest.raises(ValueError, match=r"^max_iterations: expected an integer >= 0"):
+    with pytest.raises(ValueError, match=r"^max_iterations must be an integer >= 0"):
         solve_lcp(W, b, method, max_iterations=most)
-    with pytest.raises(ValueError, match=r"^max_iterations: expected an integer >= 0"):
+    with pytest.raises(ValueError, match=r"^max_iterations must be an integer >= 0"):
         solve_lcp_batch(W, b[None], max_iterations=most)
 
 
