@@ -1,7 +1,7 @@
 """The choice of a method by size, structure and symmetry, measured in benchmarks/lcp.
 
-few unknowns, or a sparse matrix of few         pivoting
-dense and large, or sparse                      Newton's method; pivoting if the judge refuses its answer
+few unknowns, or a matrix without structure     pivoting
+sparse, or too large for pivoting               Newton's method; pivoting if the judge refuses its answer
                                                 and the matrix is small enough to be made dense
 """
 
@@ -16,16 +16,15 @@ from lcpstep.lcp.newton import newton
 from lcpstep.lcp.problem import Solution, is_sparse
 
 SMALL = 400  # unknowns up to which compiled pivoting is as fast as sparse factors
-SMALL_DENSE = 1500  # the same for a matrix without structure
 SPARSE = 0.1  # part of nonzero entries below which a large dense W is treated as sparse
-LARGEST_DENSE = 3000  # unknowns up to which pivoting on a dense copy is worth its time
+LARGEST_DENSE = 3000  # the same for a matrix without structure; and where Newton's method has failed
 
 
 def automatic(W: Any, b: Any, z: Any, tol: float, max_iterations: int | None) -> Solution:
     """Solve with the method that suits W, and with pivoting where that fails."""
     n = len(b)
     full = not is_sparse(W) and np.count_nonzero(W) > SPARSE * n * n
-    if n <= (SMALL_DENSE if full else SMALL):
+    if n <= (LARGEST_DENSE if full else SMALL):
         return pivoting(dense(W), b, z, tol, max_iterations)
     suited = W if full or is_sparse(W) else _csr(W)
     solution = newton(suited, b, z, tol, max_iterations)
