@@ -222,7 +222,7 @@ class Recorder:
         dense[length[: len(dense)] == 0.0] = 0.0
         return dense
 
-    def impacts(self, since: float) -> int:
+    def count_impacts(self, since: float) -> int:
         """How many were taken with a time from `since` on."""
         found = 0
         for lines in reversed(self._events):
@@ -232,7 +232,7 @@ class Recorder:
                 break
         return found
 
-    def events(self, end: float) -> Any:
+    def log(self, end: float) -> Any:
         """The impact log of a span that ends at `end`, a record array of `trajectory.IMPACT_DTYPE`."""
         if self.taken == 0:
             return NO_EVENTS

@@ -34,7 +34,10 @@ Array = NDArray[np.float64]
 
 
 class Portions(ABC):
-    """Whatever is fed to a kernel in portions, until it is over; `course`: that kernel, see `kernels.course`."""
+    """Whatever is fed to a kernel in portions, until it is over.
+
+    course : that kernel, see `kernels.course`; of steps, which override `advance`, it is `loop` of `StepRun`
+    """
 
     course: Any
 
@@ -42,7 +45,7 @@ class Portions(ABC):
         self.method, self.scene, self.kept, self.pace = method, scene, kept, pace
 
     def advance(self, goal: int) -> int:
-        """Call the kernel, for `done` to become `goal` at most; a `Status`, or BUFFER_FULL: why it returned."""
+        """Call the kernel, for `done` to become `goal` at most; why it returned: a `Status`, or a code of its own."""
         return int(self.course.advance(goal))
 
     @property
@@ -150,7 +153,7 @@ class Run(Portions):
         """Whether steps and events go on that take the time on by next to nothing, or without sense."""
         look = self.standstill
         taken = self.done + self.recorder.taken
-        stands = look.reached(taken, self.now, self.recorder.impacts, self.kinetic_energy)
+        stands = look.reached(taken, self.now, self.recorder.count_impacts, self.kinetic_energy)
         if look.crawls and not stands:
             q, v = (x.copy() for x in self.state)
             stands = not self.asked and bool(unrepeatable(self.scene, self.now, q, v))
@@ -202,7 +205,7 @@ class Run(Portions):
         impulse, friction, joint = self.shares(s)
         return Trajectory(
             scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v, impulse=impulse,
-            impacts=self.recorder.events(self.scene.t_span[1]), status=self.status(code), message=self.message(code),
+            impacts=self.recorder.log(self.scene.t_span[1]), status=self.status(code), message=self.message(code),
             counts=self.counts, dense=self.dense(s), joint_impulse=joint,
             friction_impulse=friction,
         )  # fmt: skip

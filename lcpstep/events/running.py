@@ -1,4 +1,4 @@
-"""What event-driven runs share: buffers whose last row may still change, and states between kept ones."""
+"""What event-driven runs share: how far they have come, what is still to be kept, and states between kept ones."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class EventRun(Run):
 
 
 class Integrated(EventRun):
-    """One run whose motion between events is a chain of Runge-Kutta steps, or of constant accelerations.
+    """One run whose motion between events is a chain of steps, or of constant accelerations.
 
     clock, motion   times of the motion; its steps, which have the state reached
     scan            longest interval between two looks for events
@@ -117,7 +117,7 @@ class Integrated(EventRun):
     @property
     def latest(self) -> list[int]:
         """The contacts of the last events at one time."""
-        log = self.recorder.events(self.scene.t_span[1])
+        log = self.recorder.log(self.scene.t_span[1])
         return sorted({int(c) for c in log.contact[log.time == log.time.max(initial=-np.inf)]})
 
     @property

@@ -63,7 +63,7 @@ class Clock:
         self.t0 = t
         self.t0_rest, self.rest = self.rest, 0.0
 
-    def log(self, t: float, c: int, kind: int, before: float, later: float, p: float) -> None:
+    def log(self, t: float, c: int, before: float, later: float, p: float, kind: int) -> None:
         """Note an event of contact c; those that pass without the time going on are counted."""
         self.record.note(t, c, before, later, p, kind)
         self.tally.add_event(abs(self.t0 - self.last_event) <= 4.0 * RESOLUTION * abs(self.t0))

@@ -29,8 +29,8 @@ class Record:
     Of each row:
 
     t        its time
-    mode     whether the contact is closed (of `Located`: whether velocities may have jumped here; of arcs: the
-             direction of sliding)
+    mode     whether the contact is closed (of `Located` without friction and joints: whether velocities may have
+             jumped here; of arcs: the direction of sliding)
     length   duration of the step that follows, 0 where none has
     q, v     the state
     impulse  since the row before

@@ -220,7 +220,7 @@ def test_a_follower_on_a_slow_table_never_leaves_it():
 @pytest.mark.parametrize("method", [Moreau(1e-2), Located(1e-2), EventDriven()])
 def test_ctrl_c_while_the_trajectory_is_put_together_leaves_it_whole(method, monkeypatch):
     scene = scenes.bouncing_ball(t_end=1.0)
-    whole, events, calls = simulate(scene, method, keep="impacts"), Recorder.events, []
+    whole, events, calls = simulate(scene, method, keep="impacts"), Recorder.log, []
 
     def interrupted(recorder, end):
         calls.append(end)

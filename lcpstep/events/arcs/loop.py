@@ -86,7 +86,7 @@ def begin(s: Arc) -> None:
 
 def note(s: Arc, kind: int) -> None:
     """Log an event at the base time; the sliding velocity is zero there."""
-    s.log(s.t0, 0, kind, 0.0, 0.0, 0.0)
+    s.log(s.t0, 0, 0.0, 0.0, 0.0, kind)
 
 
 def decide(s: Arc) -> None:

@@ -7,7 +7,7 @@ import cython
 from lcpstep.events.codes import EDGE, JUMP, LEANS, NO_SURFACE, OBEY, OPEN, SETTLE, SLIDES, STICKS
 from lcpstep.events.contacts.corners import land_on_corner
 from lcpstep.events.contacts.equations import measure, share_left
-from lcpstep.events.contacts.impact import forget_terms
+from lcpstep.events.contacts.impact import begin_instant
 from lcpstep.events.contacts.leaning import wavers
 from lcpstep.events.contacts.parting import part_before
 from lcpstep.events.contacts.state import GUARDS, Rubbing
@@ -73,7 +73,7 @@ def meet(s: Rubbing, c: int) -> int:
         s.rows.culprit = c
         return NO_SURFACE
     s.touches[c] = 1
-    forget_terms(s)
+    begin_instant(s)
     if s.clock.leaves_to_corner(s.clock.t0):
         s.clock.start_at(s.clock.high)
         return land_on_corner(s)
@@ -87,7 +87,7 @@ def stop(s: Rubbing, c: int) -> None:
     """The sliding velocity of contact c is zero."""
     land_with(s)
     find_standing(s)
-    s.free[c] = 1
+    s.may_stick[c] = 1
     stop_with(s, c)
     s.rows.next = SETTLE
 
@@ -123,7 +123,7 @@ def stop_with(s: Rubbing, c: int) -> None:
         k = s.n_j + s.n_c + d
         with_it = s.velocity[i] * acceleration_of(s.rows, k, s.a) / own
         if abs(s.velocity[k] - with_it) <= still(s.rows, k) + EDGE * abs(with_it):
-            s.free[d] = 1
+            s.may_stick[d] = 1
 
 
 def find_standing(s: Rubbing) -> None:
@@ -132,4 +132,4 @@ def find_standing(s: Rubbing) -> None:
     Feet of one body that share a direction are among these: one of them is held, the others have a share of the load.
     """
     for c in range(s.n_c):
-        s.free[c] = 1 if s.mode[c] in (STICKS, LEANS) or has_stopped(s.rows, c) else 0
+        s.may_stick[c] = 1 if s.mode[c] in (STICKS, LEANS) or has_stopped(s.rows, c) else 0

@@ -13,7 +13,7 @@ import cython
 from lcpstep.events.codes import OPEN, SLIDES, STICKS
 from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.held import know_rows
-from lcpstep.events.contacts.impact import find_free
+from lcpstep.events.contacts.impact import find_who_may_stick
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.accelerations import accelerate
 from lcpstep.events.rows.chatter import (
@@ -65,7 +65,7 @@ def close_small(s: Rubbing, t: float) -> bool:
     for c in range(s.n_c):  # of those that the others, closed, have left without speed the forces decide
         if just_opened(s.rows, c):
             s.mode[c] = SLIDES
-    find_free(s)
+    find_who_may_stick(s)
     return True
 
 
@@ -153,7 +153,7 @@ def close(s: Rubbing, c: int) -> None:
         take_back(s, c)
     put_on_account(s.rows)
     measure_velocities(s.rows, s.v)
-    find_free(s)
+    find_who_may_stick(s)
 
 
 def take_velocities(s: Rubbing) -> None:

@@ -12,7 +12,7 @@ import cython
 
 from lcpstep.events.codes import JUMP, OPEN
 from lcpstep.events.contacts.equations import measure
-from lcpstep.events.contacts.impact import forget_terms
+from lcpstep.events.contacts.impact import begin_instant
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import still, stop_joints
 from lcpstep.events.rows.jumps import go_beyond, joints_jump
@@ -46,7 +46,7 @@ def strike_beyond(s: Rubbing) -> int:
     go_beyond(s.rows, s.y)
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
-    forget_terms(s)
+    begin_instant(s)
     if joints_jump(s.rows, s.v):
         stop_joints(s.rows)
     for c in range(s.n_c):

@@ -117,9 +117,9 @@ def let_stick(s: Rubbing) -> bool:
     some = False
     for c in range(s.n_c):
         i = s.n_j + s.n_c + c
-        slides = s.mode[c] != OPEN and s.free[c] == 0
+        slides = s.mode[c] != OPEN and s.may_stick[c] == 0
         if slides and abs(s.velocity[i]) <= speed_tolerance(s.rows, i):
-            s.free[c], s.problem.mu[c], some = 1, s.mu_s[c], True
+            s.may_stick[c], s.problem.mu[c], some = 1, s.mu_s[c], True
     return some
 
 

@@ -32,6 +32,7 @@ from lcpstep.pointers import abs, after, inf, max, min
 def jump(s: Rubbing, t: float) -> int:
     """Impacts until no contact on its surface approaches; those that are left without speed are closed.
 
+    `begin_instant` has set `rounds` to zero, and a full record leaves it as it is.
     Impacts that go to and fro are summed where they fade in proportion, and have no end where all returns as it was;
     others, as in a wedge that closes, end in a plastic one of all contacts that touch, if there is friction.
     """
@@ -42,7 +43,7 @@ def jump(s: Rubbing, t: float) -> int:
     while s.rounds < most:
         if not approaches(s):
             rejoin(s)
-            find_free(s)
+            find_who_may_stick(s)
             if s.clock.tally.stalled > s.stalled + 1:  # the impacts of one instant count as one
                 s.clock.tally.stalled = s.stalled + 1
             return DONE
@@ -94,14 +95,17 @@ def strike_by_either(s: Rubbing, t: float, plastic: bool) -> bool:
 
 
 def look_before(s: Rubbing) -> None:
-    """The velocities before an impact, or before the jump at a corner; what is closed has none but rounding."""
+    """The velocities before an impact, or before the jump at a corner; what is closed has none but rounding.
+
+    In the impact every contact may stick: all that rub have a friction unknown each.
+    """
     for c in range(s.n_c):
         s.before[c] = s.velocity[s.n_j + c] - s.jumped[c]
         if s.mode[c] != OPEN:
             s.terms[c], s.before[c] = max(s.terms[c], abs(s.before[c])), 0.0
         if s.n_t > 0:
             take_for_none(s, c)
-        s.free[c] = 1
+        s.may_stick[c] = 1
 
 
 def can_rest(s: Rubbing) -> bool:
@@ -145,7 +149,7 @@ def gather(s: Rubbing, plastic: bool) -> tuple[int, int]:
         u, least = s.before[c], s.terms[c]
         struck = u <= least if s.parting[c] == 0 else u < -least
         if s.mode[c] != OPEN or (s.touches[c] == 1 and (plastic or s.in_turn or struck)):
-            s.problem.ids[n] = c
+            s.problem.ids[n] = c  # a mere list: `pose` writes that of the problem
             n += 1
     if not plastic and follow_each_other(s, n):
         n = leave_for_later(s.rows, n, s.length == 0.0)
@@ -164,7 +168,7 @@ def follow_each_other(s: Rubbing, n: int) -> bool:
 
 
 def pose(s: Rubbing) -> tuple[int, int]:
-    """The problem of the closed contacts on the joints; how many, and how many have unknown friction."""
+    """The matrix of the closed contacts on the joints; how many there are, and how many have unknown friction."""
     s.coefficients.use(s.problem.mu)
     hold_joints(s.rows)
     n_a, n_f = list_unknowns(s.rows)
@@ -189,7 +193,7 @@ def strike_with(s: Rubbing, t: float, n_a: int, n_f: int, jammed: int, plastic: 
                 u = 0.0 - s.model.restitution[c] * min(s.before[c], 0.0)  # by the law
             kind = ACCUMULATION if plastic and s.model.restitution[c] > 0.0 else IMPACT
             kind = JAM if c == jammed or jammed == s.n_c else kind
-            s.clock.log(t, c, kind, s.before[c], u, s.problem.impulse[a])
+            s.clock.log(t, c, s.before[c], u, s.problem.impulse[a], kind)
             s.rows.since[c], s.rows.struck[c], s.carried[c] = t - s.rows.struck[c], t, 0
         s.mode[c], s.jumped[c] = OPEN if u > s.terms[c] else SLIDES, 0.0
 
@@ -220,29 +224,29 @@ def taken_along(s: Rubbing, c: int) -> bool:
     return s.jumped[c] != 0.0 and s.before[c] == 0.0
 
 
-def find_free(s: Rubbing) -> None:
+def find_who_may_stick(s: Rubbing) -> None:
     """Which closed contacts have no sliding velocity; the direction of the others.
 
     What an impact keeps from sliding it leaves without speed but for rounding. Beside hops of a chattering slower
     sliding than the tolerance is no rest: to stop it would feed them without end.
     """
     for c in range(s.n_c):
-        s.free[c] = 1 if is_free(s, c) else 0
-        if s.n_t > 0 and s.free[c] == 1:
+        s.may_stick[c] = 1 if stands(s, c) else 0
+        if s.n_t > 0 and s.may_stick[c] == 1:
             s.velocity[s.n_j + s.n_c + c] = 0.0
-        elif s.free[c] == 0:
+        elif s.may_stick[c] == 0:
             s.direction[c] = 1.0 if sliding(s.rows, c) > 0.0 else -1.0
 
 
-def is_free(s: Rubbing, c: int) -> bool:
+def stands(s: Rubbing, c: int) -> bool:
     """Whether contact c has no sliding velocity, between or after the impacts of an instant."""
     if s.rounds == 0 or s.n_t == 0:
         return has_stopped(s.rows, c)
     return abs(sliding(s.rows, c)) <= s.terms[s.n_c + c]
 
 
-def forget_terms(s: Rubbing) -> None:
-    """A new instant: what rounding leaves of gap velocities is that of the velocities at hand.
+def begin_instant(s: Rubbing) -> None:
+    """A new instant: no impact yet, no jump; what rounding leaves of gap velocities is that of those at hand.
 
     Next to nothing is none: hops of a body at rest in a heap, on which no force acts but those of others, may else
     fade until no number tells them apart.

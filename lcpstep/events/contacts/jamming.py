@@ -37,7 +37,7 @@ def jam(s: Rubbing, t: float) -> int:
     clear(s.instant, s.n_r)
     for c in range(s.n_c):
         s.before[c] = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
-        s.free[c], s.touches[c] = 1, 1 if s.mode[c] != OPEN else 0
+        s.may_stick[c], s.touches[c] = 1, 1 if s.mode[c] != OPEN else 0
     accelerate_on_joints(s.rows)
     n_a, n_f = pose(s)
     hit = s.rows.culprit

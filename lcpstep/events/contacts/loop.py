@@ -30,7 +30,7 @@ from lcpstep.events.contacts.chatter import close_small
 from lcpstep.events.contacts.corners import turn_corner
 from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.guards import begin_guards
-from lcpstep.events.contacts.impact import forget_terms, jump
+from lcpstep.events.contacts.impact import begin_instant, jump
 from lcpstep.events.contacts.jamming import jam
 from lcpstep.events.contacts.loose import find_loose
 from lcpstep.events.contacts.modes import adopt_modes, decide, keep_mode, obey, undecided
@@ -92,8 +92,9 @@ def occur(s: Rubbing) -> int:
     if s.rows.next == SWITCH:
         s.rows.next = JUMP
         return switch(s)
-    settles, s.rows.next = s.rows.next == SETTLE, MOVE
-    return settle(s) if settles else follow(s)
+    settles = s.rows.next == SETTLE
+    s.rows.next = MOVE
+    return settle(s) if settles else obey_found(s)
 
 
 def yielding(s: Rubbing, code: int) -> int:
@@ -132,14 +133,14 @@ def begin(s: Rubbing) -> int:
     s.clock.find_corners(s.clock.t0)
     if not measure(s, s.clock.t0, s.y):
         return NOT_FINITE
-    forget_terms(s)
+    begin_instant(s)
     find_closed(s)
     s.rows.next = JUMP
     return DONE
 
 
 def settle(s: Rubbing) -> int:
-    """Forces and modes at the base state, where `free` says which contacts do not slide; hops that end."""
+    """Forces and modes at the base state, where `may_stick` says which contacts do not slide; hops that end."""
     t = s.clock.t0
     for turn in range(s.n_c + 1):
         if not measure(s, t, s.y):
@@ -215,11 +216,11 @@ def tell_left(s: Rubbing, t: float) -> None:
     """
     for c in range(s.n_c):
         if s.was_mode[c] == OPEN and s.tried[c] != OPEN and s.new_mode[c] == OPEN:
-            s.clock.log(t, c, STAYS_CLOSED, 0.0, s.velocity[s.n_j + c], 0.0)
+            s.clock.log(t, c, 0.0, s.velocity[s.n_j + c], 0.0, STAYS_CLOSED)
             s.was_mode[c] = SLIDES
 
 
-def follow(s: Rubbing) -> int:
+def obey_found(s: Rubbing) -> int:
     """Obey the modes that `look_ahead` has found."""
     code = obey(s, s.clock.t0)
     return set_out(s, s.clock.t0) if code == DONE else code

@@ -45,13 +45,13 @@ LEANING = 1e-12
 def decide(s: Rubbing) -> int:
     """New modes of the closed contacts at the state just measured, in `new_mode` and `new_direction`; a status.
 
-    `free` says which contacts may stick: their sliding velocity is zero. The others slide as `direction` says.
+    `may_stick` says which contacts may: their sliding velocity is zero. The others slide as `direction` says.
     """
     for c in range(s.n_c):
         s.new_mode[c], s.new_direction[c], s.new_loaded[c] = OPEN, s.direction[c], 0
     accelerate_on_joints(s.rows)
     for c in range(s.n_c):
-        s.problem.mu[c] = s.mu_s[c] if s.free[c] == 1 else s.mu[c]
+        s.problem.mu[c] = s.mu_s[c] if s.may_stick[c] == 1 else s.mu[c]
     begins = True
     while True:
         n_a, n_f = list_unknowns(s.rows)
@@ -85,7 +85,7 @@ def rest_where_possible(s: Rubbing, n_a: int, n_f: int) -> None:
     if some:
         for a in range(n_a):
             c = s.problem.ids[a]
-            s.problem.sum[a] = 1.0 if s.free[c] == 0 and s.coefficients.rough[c] == 1 else 0.0
+            s.problem.sum[a] = 1.0 if s.may_stick[c] == 0 and s.coefficients.rough[c] == 1 else 0.0
         stay(s.problem, n_a, n_f)
 
 
@@ -108,7 +108,7 @@ def find_forces(s: Rubbing, n_a: int, n_f: int) -> int:
     m, jams = n_a + n_f, -1
     for a in range(n_a):
         c = s.problem.ids[a]
-        if s.free[c] == 0 and can_bear(s.rows, c) and s.problem.mobility[a * m + a] <= 0.0:
+        if s.may_stick[c] == 0 and can_bear(s.rows, c) and s.problem.mobility[a * m + a] <= 0.0:
             jams = a
     if jams >= 0:
         s.rows.culprit = s.problem.ids[jams]

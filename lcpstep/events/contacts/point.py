@@ -16,7 +16,7 @@ from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.equations import measure, measure_rows
 from lcpstep.events.contacts.guards import look
 from lcpstep.events.contacts.held import right_hand_side
-from lcpstep.events.contacts.impact import find_free
+from lcpstep.events.contacts.impact import find_who_may_stick
 from lcpstep.events.contacts.modes import adopt_modes, decide
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.rows.contacts import hold_modes, pull
@@ -44,7 +44,7 @@ def settle(s: Rubbing, t: float, x: Any, closed: Any) -> int:
         s.touches[c] = 1 if closed[c] else 0
     if not measure(s, t, s.y):
         return NOT_FINITE
-    find_free(s)
+    find_who_may_stick(s)
     code = decide(s)
     return adopt_modes(s) if code == DONE else code
 

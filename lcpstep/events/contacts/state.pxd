@@ -29,6 +29,6 @@ cdef class Rubbing(RungeKutta):
     cdef readonly Motion watch
     cdef bint hopping, watched, flying
     cdef Py_ssize_t guards
-    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, free, touches, parting, tried, hops, carried, leader
+    cdef Indices mode, was_mode, new_mode, loaded, new_loaded, may_stick, touches, parting, tried, hops, carried, leader
     cdef Doubles value, band, samples
     cdef Indices armed

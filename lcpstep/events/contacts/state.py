@@ -33,11 +33,12 @@ class Rubbing(RungeKutta):
     plain                        no function of the user's is in it
     n_t                          tangents: n_c, or none without friction
     a, a_free, force, R, MR, W, rate, bias, gap, velocity, multiplier, effect, impulse, change, dv, problem, mu,
-    mu_s, terms, instant, before, direction, mode, was_mode, tried, loaded, free, touches, parting   of `rows`; W is D
+    mu_s, terms, instant, before, direction, mode, was_mode, tried, loaded, may_stick, touches, parting
+                                 of `rows`; W is D
     q, v : (n_q,)                state at the base time, of which `rows` knows too
     slip : (n_c,)                sliding velocities that coefficients of friction depend on
     tangential : (n_c,)          restitution on the tangent
-    yields                       sliding that jams ends in an impact without collision
+    yields, jams                 sliding that jams ends in an impact without collision; how often it did
     in_turn                      impacts are integrated, one contact after the other: see `kernels.energetic`
     new_mode, new_direction, new_loaded : (n_c,)   as decided, but not yet obeyed
     jumped : (n_c,)              by how much its gap velocity has just jumped, of what is on its surface at a corner
@@ -58,7 +59,6 @@ class Rubbing(RungeKutta):
         such a row has been, see `loose`
     leader, sharing              whose tangent is held for that of each contact at rest, where some stand for others
     risen                        the guard found has been above its band before it falls through zero
-    jams                         how often it did
     rounds, stalled              problems of impacts at this instant; events at one time before it
     doubt : (n_r,)               accelerations of rows that are not known where modes are sought, see `balance`
     guard, found, slope          the guard that acts, when, and how fast it falls;  seen, samples    scratch
@@ -115,7 +115,7 @@ class Rubbing(RungeKutta):
         self.impulse, self.instant, self.before = shared.impulse, shared.instant, shared.before
         self.direction, self.mode, self.was_mode = shared.direction, shared.mode, shared.was_mode
         self.tried, self.loaded = shared.tried, shared.loaded
-        self.free, self.touches, self.parting = shared.free, shared.touches, shared.parting
+        self.may_stick, self.touches, self.parting = shared.may_stick, shared.touches, shared.parting
         self.dy = doubles(self.table)
         self.seen = after(self.dy, 2 * n)
         self.paces, self.paced = after(self.seen, 2 * n), 0

@@ -19,7 +19,7 @@ import cython
 
 from lcpstep.events.codes import ENTERED, INSIDE, JUMPED, LOOKED, OPEN, SWITCH
 from lcpstep.events.contacts.equations import measure
-from lcpstep.events.contacts.impact import forget_terms
+from lcpstep.events.contacts.impact import begin_instant
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import find_closed
 from lcpstep.events.hybrid.locate import UNKNOWN, find, locate, turns_back
@@ -123,7 +123,7 @@ def place(s: Rubbing, moved: bool) -> int:
             if s.gap[s.n_j + c] < -max(s.rows.rounding_of_gap(c), gap_tolerance(s.rows, c)):
                 s.rows.culprit = c
                 return INSIDE
-    forget_terms(s)
+    begin_instant(s)
     if moved:
         find_closed(s)
     return DONE

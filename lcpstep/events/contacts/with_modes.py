@@ -70,7 +70,7 @@ class RunWithModes(ContactRun):
             scene=self.modes, method=self.method, t=pieces.t, x=pieces.x, mode=np.array(names)[mode],
             switches=switch_log(self.modes, self.log), status=self.status(code), message=self.message(code),
             counts=self.counts, pieces=pieces, impulse=impulse, friction_impulse=friction,
-            impacts=self.recorder.events(self.scene.t_span[1]),
+            impacts=self.recorder.log(self.scene.t_span[1]),
         )  # fmt: skip
 
     def why(self, code: int) -> str:

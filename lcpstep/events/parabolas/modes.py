@@ -157,7 +157,7 @@ def tell_impacts(s: Mechanism, t: float) -> None:
         before, noise = s.before[c], s.noise(c)
         if p > 0.0:
             u = -s.model.restitution[c] * before
-            s.log(t, c, IMPACT, before, u, p)
+            s.log(t, c, before, u, p, IMPACT)
             s.since[c], s.struck[c] = t - s.struck[c], t
         else:
             u = s.velocity[s.n_j + c]

@@ -254,4 +254,4 @@ def tell_over(s: Contacts, c: int) -> None:
     s.chatter_end[c] = s.t0 + T
     if abs(u) > s.noise(c):
         p = max(-alpha * T - u, 0.0) / s.D[i * s.n_r + i]
-        s.log(s.chatter_end[c], c, ACCUMULATION, -abs(u), 0.0, p)
+        s.log(s.chatter_end[c], c, -abs(u), 0.0, p, ACCUMULATION)

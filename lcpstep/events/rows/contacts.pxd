@@ -5,4 +5,4 @@ cdef class Contacts(Rows):
     cdef readonly ContactProblem problem
     cdef Doubles q, v, dv, each, a, effect, multiplier, gap, velocity, impulse, turn_impulse, turn_velocity, instant, terms, owed
     cdef Doubles before, curve, struck, since, left, chatter_end, mu, mu_s, direction, was_direction
-    cdef Indices rough, mode, was_mode, tried, loaded, free, touches, parting
+    cdef Indices rough, mode, was_mode, tried, loaded, may_stick, touches, parting

@@ -52,7 +52,7 @@ class Contacts(Rows):
     mu, mu_s, rough : (n_c,)     friction of what slides and of what sticks; whether there is any
     mode, was_mode, tried : (n_c,)      OPEN, STICKS, SLIDES, LEANS; as last told; while others are tried
     direction, was_direction : (n_c,)   sign of the sliding velocity
-    loaded, free, touches : (n_c,)      carries a force; slides in no direction; gap zero, whatever it measures
+    loaded, may_stick, touches : (n_c,)      carries a force; slides in no direction; gap zero, whatever it measures
     parting : (n_c,)    opened by the forces between impacts of one instant
     given               as of `Rows`
     """
@@ -89,11 +89,17 @@ class Contacts(Rows):
         self.was_mode = indices_after(self.mode, n_c)
         self.tried = indices_after(self.was_mode, n_c)
         self.loaded = indices_after(self.tried, n_c)
-        self.free = indices_after(self.loaded, n_c)
-        self.touches = indices_after(self.free, n_c)
+        self.may_stick = indices_after(self.loaded, n_c)
+        self.touches = indices_after(self.may_stick, n_c)
         self.parting = indices_after(self.touches, n_c)
         # Of their owner: the state, and friction, if there is any
-        self.q, self.v, self.mu, self.mu_s, self.rough = self.a, self.dv, self.before, self.before, self.free
+        self.q, self.v, self.mu, self.mu_s, self.rough = (
+            self.a,
+            self.dv,
+            self.before,
+            self.before,
+            self.may_stick,
+        )
         for c in range(n_c):
             self.struck[c] = self.chatter_end[c] = -inf
 

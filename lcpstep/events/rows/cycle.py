@@ -31,7 +31,7 @@ def recurs(s: Contacts) -> float:
     """
     n_j = s.n_j
     for c in range(s.n_c):
-        s.noise(c)  # into `terms`
+        s.noise(c)  # `parabolas.Mechanism` has it made anew, into `terms`
     ratio = proportion(s.turn_impulse, after(s.turn_velocity, n_j), after(s.velocity, n_j), s.terms, s.n_c)
     if ratio >= FOR_EVER:
         return 0.0 if slows(s) else ratio
@@ -80,7 +80,7 @@ def sum_up(s: Contacts, ratio: float) -> None:
         p = rest * s.turn_impulse[c]
         if p > 0.0:
             before = s.velocity[s.n_j + c] if s.mode[c] == OPEN else 0.0
-            s.log(s.t0, c, ACCUMULATION, before, 0.0, p)
+            s.log(s.t0, c, before, 0.0, p, ACCUMULATION)
             s.since[c], s.struck[c] = s.t0 - s.struck[c], s.t0
             if s.mode[c] == OPEN:
                 rough = rubs(s, c)

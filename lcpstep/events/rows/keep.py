@@ -81,12 +81,12 @@ def tell(s: Contacts, t: float) -> bool:
                 kind, when, some = STAYS_CLOSED, max(t, s.chatter_end[c]), True
             else:
                 s.chatter_end[c] = t
-            s.log(when, c, kind, 0.0, s.velocity[i], 0.0)
+            s.log(when, c, 0.0, s.velocity[i], 0.0, kind)
         elif was == SLIDES and now == STICKS:
-            s.log(t, c, STICK_TANGENT, slip, 0.0, 0.0)
+            s.log(t, c, slip, 0.0, 0.0, STICK_TANGENT)
         elif was == STICKS and now == SLIDES:
-            s.log(t, c, SLIP, 0.0, slip, 0.0)
+            s.log(t, c, 0.0, slip, 0.0, SLIP)
         elif was == SLIDES and now == SLIDES and rubs(s, c) and s.direction[c] != s.was_direction[c]:
-            s.log(t, c, REVERSE, slip, slip, 0.0)
+            s.log(t, c, slip, slip, 0.0, REVERSE)
         s.was_mode[c], s.was_direction[c] = now, s.direction[c]
     return some

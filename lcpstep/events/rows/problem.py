@@ -33,7 +33,7 @@ def list_unknowns(s: Contacts) -> tuple[int, int]:
     for c in range(s.n_c):
         if s.mode[c] != OPEN:
             s.problem.ids[n_a] = c
-            if s.free[c] == 1 and rubs(s, c):
+            if s.may_stick[c] == 1 and rubs(s, c):
                 s.problem.carrier[n_f] = n_a
                 n_f += 1
             n_a += 1
@@ -46,7 +46,7 @@ def fill(s: Contacts, n_a: int, n_f: int) -> None:
     fill_without_sliding(s, n_a, n_f)
     for b in range(n_a if s.n_t > 0 else 0):
         c = s.problem.ids[b]
-        if s.free[c] == 0 and rubs(s, c):
+        if s.may_stick[c] == 0 and rubs(s, c):
             for a in range(m):
                 k = row_of(s, a, n_a) * s.n_r + row_of(s, b, n_a) + s.n_c
                 W[a * m + b] -= s.direction[c] * s.mu[c] * s.D_on[k]
@@ -109,7 +109,7 @@ def leave_independent(s: Contacts, n_a: int, loaded: Indices) -> None:
         c = s.problem.ids[a]
         s.curve[c] = s.problem.impulse[a]
         if s.n_t > 0:
-            slides = s.free[c] == 0 and rubs(s, c)
+            slides = s.may_stick[c] == 0 and rubs(s, c)
             s.share[s.n_j + c] = -s.direction[c] * s.mu[c] if slides else 0.0
             s.either[s.n_j + c] = 0
     unload(s, s.curve, loaded, s.n_c)

@@ -57,7 +57,7 @@ def strike(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     obstacle as its restitution asks, and speeds carried along beside the velocities may not agree with these: where
     no impulses answer, they but end the approach that the velocities have.
     """
-    n_s = answer(m, plan, w, first, t, first == CORNER)
+    n_s = answer(m, plan, w, first, t, False)
     if n_s >= 0 or first == CORNER:
         return n_s
     for c in range(w.n_c):
@@ -75,9 +75,9 @@ def touch(w: Work, c: int) -> None:
 
 
 def answer(m: Model, plan: Plan, w: Work, first: int, t: float, drifted: bool) -> int:
-    """One attempt at an impact, at time t. Drifted, the second one: what is closed has speeds too, and none rebounds.
+    """One attempt at an impact, at time t: how many took part, -1 where it was not solved.
 
-    At a corner closed contacts have speeds as well, and those that strike rebound.
+    Drifted, the second attempt: closed contacts have speeds, as they have at a corner, and none rebounds.
     """
     if first != CORNER and w.close_hits[first] >= MANY_AT_ONCE:
         measure_rates(w)
@@ -100,7 +100,7 @@ def answer(m: Model, plan: Plan, w: Work, first: int, t: float, drifted: bool) -
                 collapsed = collapsed or (w.plastic[c] == 1 and w.close_hits[c] >= IN_A_ROW)
             r = 0.0 if w.plastic[c] == 1 else m.restitution[c]
             w.b[k] = w.rate[c] + r * min(w.before[c], 0.0)
-        elif drifted:
+        elif drifted or first == CORNER:
             w.b[k] = w.rate[c]
     together = choose_collapsing(plan, w, first, n_s) if collapsed else n_s
     if together > n_s and solve_chosen(m, plan, w, w.W, INERTIA, together, NONE):
@@ -109,7 +109,7 @@ def answer(m: Model, plan: Plan, w: Work, first: int, t: float, drifted: bool) -
         clear(w.z, n_s)
         if not solve_chosen(m, plan, w, w.W, INERTIA, n_s, NONE):
             return -1
-    if jump(plan, w, n_s) == 0.0:
+    if apply(plan, w, n_s) == 0.0:
         idle(w)
     for k in range(n_s):
         after_impact(m, plan, w, w.chosen[k], w.z[k], t)
@@ -118,7 +118,7 @@ def answer(m: Model, plan: Plan, w: Work, first: int, t: float, drifted: bool) -
 
 
 def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
-    """Contacts that fire now; their number, the velocities of all gaps before it into `before`.
+    """Contacts that fire now; their number, the velocities of all gaps before the impact into `before`.
 
     The gaps of those chosen are zero from now on; what falls freely has the speed that it has left with (`fall`).
     Those that close with one speed land together, those that touched before are pushed together, and so are those
@@ -133,7 +133,7 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
         # Rounding must not add up over chattering: it strikes with the speed that it left with
         if w.fall[c] > 0.0 and w.rate[c] < 0.0 and closing:
             w.rate[c] = -w.fall[c]
-        w.before[c], w.p[c] = w.rate[c], 0.0  # p marks: 1 where contact c is among those struck
+        w.before[c], w.p[c] = w.rate[c], 0.0  # p marks: 1 where contact c strikes with the first
     w.chosen[0] = first
     if w.n_c == 1:
         w.gap[first], w.grounded[first] = 0.0, GROUND
@@ -198,7 +198,7 @@ def rounding_of_gap(m: Model, plan: Plan, w: Work, c: int) -> float:
     return max(here, min(plan.slack, here + TOGETHER * (w.steps - 1) * step))
 
 
-def jump(plan: Plan, w: Work, n_s: int) -> float:
+def apply(plan: Plan, w: Work, n_s: int) -> float:
     """Velocities after the impulses z of the chosen contacts, what rounding leaves of zero is zero; the largest z."""
     n, largest = w.n_q, 0.0
     for i in range(n):
@@ -246,7 +246,10 @@ def push(plan: Plan, w: Work, d: int, p: float) -> None:
 
 
 def after_impact(m: Model, plan: Plan, w: Work, c: int, p: float, t: float) -> None:
-    """Note the impact of a contact; the velocity it leaves with, to the last digit."""
+    """Note the impact of a contact; the velocity it leaves with, to the last digit.
+
+    The impulse in the log has that of the hops left; among those of kept states that is one of the forces to come.
+    """
     r, before = m.restitution[c], min(w.before[c], 0.0)
     w.impulse[c] += p
     if w.status[c] == CLOSED:

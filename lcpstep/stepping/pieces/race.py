@@ -50,7 +50,7 @@ def race(m: Model, plan: Plan, w: Work, t: float, sigma: float, end: float, most
         if w.record.keeps_event(t + tau):
             keep_impact(w, t, tau)
     if done > 0:
-        gather(w, now, struck)
+        bring_together(w, now, struck)
     return done
 
 
@@ -146,7 +146,7 @@ def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
             w.next_zero[d] = next_zero(w, d, end)
 
 
-def gather(w: Work, now: float, struck: int) -> None:
+def bring_together(w: Work, now: float, struck: int) -> None:
     """Bring all coordinates and gaps to one time."""
     for i in range(w.n_q):
         s = now - w.q_time[i]

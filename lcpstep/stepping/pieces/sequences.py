@@ -68,7 +68,7 @@ def choose_connected(w: Work, n_s: int) -> int:
 
 
 def choose_collapsing(plan: Plan, w: Work, first: int, n_s: int) -> int:
-    """Add the contacts that collapse with the first one, which is closed: their number with the chosen ones.
+    """Add the contacts that collapse with the first one, to be closed with it: their number with the chosen ones.
 
     What is left of such a sequence, impact upon impact at one instant, ends with all of them at rest. One that is not
     brought to rest now would keep the speed of its last rebound, and go for good where nothing presses it then.
@@ -109,7 +109,7 @@ def note_hit(plan: Plan, w: Work, c: int) -> None:
 
 
 def is_over(m: Model, plan: Plan, w: Work, c: int, alone: bool, t: float) -> bool:
-    """Whether the contact that fires is closed: its next hops are too short to be followed."""
+    """Whether the contact that fires is to be closed: its next hops are too short to be followed."""
     r = m.restitution[c]
     if r == 1.0 or r == 0.0:
         return False
@@ -118,7 +118,7 @@ def is_over(m: Model, plan: Plan, w: Work, c: int, alone: bool, t: float) -> boo
         return True
     if w.half[c] >= 0.0:
         return False
-    hop = -r * w.rate[c] / -w.half[c]
+    hop = r * w.rate[c] / w.half[c]
     if (not alone or hop > w.end - w.sigma) and unresolved(plan, w, c, hop, t):
         return True
     if not alone:

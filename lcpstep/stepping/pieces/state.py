@@ -93,9 +93,9 @@ class Work:
     pushed          impulse of forces since the step began, strikes aside, that a tolerance looks at
     impulse         since the last kept state
     begins          velocity at the base of the piece at hand, where that may jump in it
-    p               impulses of the event at hand, or forces of closed contacts, by contact; in
-                    `sequences.choose_connected` 1 for contacts still to be looked at, in `impulses.choose_struck` for
-                    those that are struck
+    p               impulses of `race`, or forces of closed contacts, by contact; where impulses of an event are
+                    sought it but marks: 1 for contacts still to be looked at in `sequences.choose_connected`, chosen
+                    in `choose_collapsing` and in `impulses.choose_struck`
     b, z            of the complementarity problem at hand, and its solution
     residual, change, doubt    what the solution leaves, its correction, and the relative error of factors
     before          gap velocity before the impact or corner at hand

@@ -1,4 +1,4 @@
-"""Steps of one size of a system with friction or joints, as the loop over events takes them."""
+"""Steps of a system with friction or joints, of one size or by a tolerance, as the loop over events takes them."""
 
 from __future__ import annotations
 
