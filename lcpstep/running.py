@@ -1,8 +1,8 @@
 """A run of any method: fed to its kernels in portions, its buffers emptied between them, and how it ended in words.
 
-A method gives a class that inherits `Run`, with `advance` (its kernel), `done`, `now`, `state` and `ahead` (how far
-it has come, where it is, and goes next), `dense` (states between the kept ones), `why` (what its own statuses mean)
-and `counts`.
+A method gives a class that inherits `Run`, with `advance` (its kernel), `done`, `now`, `state`, `ahead` and `horizon`
+(how far it has come, where it is, and goes next), `dense` (states between the kept ones), `why` (what its own
+statuses mean) and `counts`.
 """
 
 from __future__ import annotations
@@ -147,7 +147,8 @@ class Run(Portions):
         m = self.method
         if hasattr(m, "rtol"):
             return f"the tolerances rtol = {m.rtol:g}, atol = {m.atol:g}"
-        return f"steps of {m.h:g} s" if m.tolerance is None else f"the tolerance {m.tolerance:g}"
+        tolerance = getattr(m, "tolerance", None)
+        return f"steps of {m.h:g} s" if tolerance is None else f"the tolerance {tolerance:g}"
 
     def stands_still(self) -> bool:
         """Whether steps and events go on that take the time on by next to nothing, or without sense."""

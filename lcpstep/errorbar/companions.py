@@ -109,7 +109,7 @@ def companions(run: Trajectory, error: float | None = None) -> Iterator[tuple[Co
     if isinstance(method, EventDriven):
         yield from _of_event_driven(method, scene, run)
         return
-    order = 1 if isinstance(method, Moreau) else method.order
+    order = getattr(method, "order", 1)
     loose = FIRST.get(order, 0.0) if error is None else min(LOOSEST, error / (ENOUGH * _size(run)))
     if loose > TIGHT and not in_closed_form(scene):
         yield (Companion(EventDriven(loose, loose), first=True),)

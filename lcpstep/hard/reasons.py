@@ -41,13 +41,8 @@ REASONS: dict[tuple[str, str, str], str] = {
         MOREAU,
         "bowl",
         "states",
-    ): "the normal of the start of the step, so the point sinks into the wall as it slides",
+    ): "it lands up to a step late, and slides on with that delay",
     (MOREAU, "elastic-gas", ""): "impacts that share a step are solved as one simultaneous impact",
-    (
-        MOREAU,
-        "inelastic-collapse",
-        "",
-    ): "one impact a contact and step: the sequence of ever quicker ones is cut off",
     (
         MOREAU,
         "heavy-on-light",

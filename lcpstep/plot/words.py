@@ -18,8 +18,9 @@ def method_words(method: Any) -> str:
     if getattr(method, "tolerance", None) is not None:
         return f"{name}, tolerance {method.tolerance:g}"
     if hasattr(method, "h"):
-        theta = f", theta = {method.theta:g}" if hasattr(method, "theta") else f", order {method.order}"
-        return f"{name}, h = {method.h:g} s{theta}"
+        more = f", theta = {method.theta:g}" if hasattr(method, "theta") else ""
+        more = f", order {method.order}" if hasattr(method, "order") else more
+        return f"{name}, h = {method.h:g} s{more}"
     return f"event-driven, tolerance {method.rtol:g}"
 
 

@@ -9,4 +9,6 @@ rubbing                  the same with friction or joints
 step_control             steps by a tolerance: `moreau_by_tolerance`, `located_by_tolerance` (`located_parts`);
                          `hidden_forces`, `hidden_switches`: what forces hide; `adaptive`: their sizes
 step_run                 what runs by steps share; what all runs do: `lcpstep.running`
+steps, extent            what all steps agree on; lengths whose rounding gaps have
+interpolation, again     states between kept ones; `hidden_edges`: obstacles' edges that steps by a tolerance pass
 """

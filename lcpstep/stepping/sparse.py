@@ -146,7 +146,10 @@ class SparseRun(StepRun):
         return Status.DONE
 
     def predict_active(self, step: Any) -> Any:
-        """Contacts with g + (h/2) u <= 0, up to rounding; of closed ones up to what it may have opened them by."""
+        """Contacts with g + (h/2) u <= 0, up to rounding; of closed ones up to what it may have opened them by.
+
+        As `theta_step.predict_active`, which knows what impulses that cancel have left, too.
+        """
         gap = self.g + 0.5 * step.h * self.u
         active = gap <= self.slack
         closed = self.closed > 0

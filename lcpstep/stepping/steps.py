@@ -1,4 +1,4 @@
-"""What all steps agree on: when a span is a whole number of them, which are too long or too short, where they begin.
+"""What all steps agree on: what is rounding; when a span is a whole number of them, which are too long or too short.
 
 Steps that are lost in the rounding of the times they are added to are refused: such a run would never end.
 """
@@ -21,6 +21,7 @@ LATE = 1e-9  # of a step: what rounding may take from the end of the last one
 RESTING = 1e-13  # of the size of the scene: a gap this small is closed
 TOUCHING = 1e-9  # of the way that forces push in a step: likewise, where a motion begins at rest
 UNTOLD = 4.0 * RESOLUTION  # of a time: its rounding, in which an obstacle moves on under a body
+# Blows, Newton's iteration and joints of `Moreau`
 TURNS = 200  # blows in a step of `Moreau` for each of its contacts; more go on in the next one
 LEFT = 1e-6  # of the fastest approach: what is slower ends in a plastic blow
 RETURNED = 2.0**-40  # of the fastest approach: blows that lead back so near to those before never end
@@ -72,7 +73,10 @@ def number(span: tuple[float, float], h: float) -> int:
 
 @functools.lru_cache(maxsize=16)
 def divided(span: tuple[float, float], h: float) -> tuple[tuple[float, float, int, int], ...]:
-    """A span in steps of h, and a last shorter one where h does not divide it: size, start, first and last number."""
+    """A span in steps of h, and a last shorter one where h does not divide it.
+
+    Of each of these stretches: size of the steps, start, number of the first step, and that after the last one.
+    """
     start, end = span
     steps = (end - start) / h
     fits = h * abs(steps - round(steps)) <= unresolved(span, h)

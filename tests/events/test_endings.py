@@ -228,7 +228,7 @@ def test_ctrl_c_while_the_trajectory_is_put_together_leaves_it_whole(method, mon
             raise KeyboardInterrupt
         return events(recorder, end)
 
-    monkeypatch.setattr(Recorder, "events", interrupted)
+    monkeypatch.setattr(Recorder, "log", interrupted)
     with pytest.raises(SimulationInterrupted) as stopped:
         simulate(scene, method, keep="impacts")
     m = stopped.value.trajectory

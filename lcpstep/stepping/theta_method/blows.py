@@ -32,7 +32,7 @@ from lcpstep.stepping.theta_method.row_impulses import forced, impulses, pose, t
 
 
 def separates(plan: Plan, s: State, c: Rows, b: Blows, n_a: int) -> bool:
-    """Whether a contact separates while another strikes; then blows can follow one another."""
+    """Whether a contact separates while another strikes: then the sequence of blows that follow begins."""
     ids, opens, closes = c.problem.ids, 0.0, 0.0
     for k in range(n_a):
         opens, closes = max(opens, s.u[ids[k]]), max(closes, -s.u[ids[k]])
@@ -71,7 +71,7 @@ def one_after_another(m: Model, plan: Plan, s: State, c: Rows, b: Blows, t_next:
         after_blow(plan, s, c, b)
         look_back(m, c, b)
     all_of_them(s, c, b)
-    pose(m, plan, s, c, s.active, t_next, True)
+    pose(m, plan, s, c, s.active, t_next, True)  # for `note_sticking`, of all rows again
     copy(c.p, b.p, c.n)
     for k in range(s.active + c.n_f):
         c.problem.impulse[k] = c.p[c.problem.ids[k]]

@@ -28,7 +28,7 @@ class Plan:
     """Matrices of a step, row by row.
 
     h, theta
-    slack                positions off joints and in obstacles by this little need no projection
+    slack                positions off joints and in obstacles by this little need no projection; not `State.slack`
     constant             X and W are those of every step
     stiff                C or K is not zero: without them A^-1 has entries where M^-1 does, and A_q and A_v have none
     A_q : (n_q, n_q)     A^-1 h K
@@ -150,7 +150,8 @@ class Rows:
     n_c, n_t, n_j, n       contacts, tangents (none or n_c), joints, and all of them
     n_f                    tangents that take part in the step at hand
     projected, turning     positions are repaired; joints' rows change
-    external, solved       the contacts' problems are handed out (NEED_LCP); one has come back, in problem.impulse
+    external, solved       the contacts' problems are handed out (NEED_LCP); one has come back, in problem.impulse:
+                           the step is begun again, and nothing is predicted anew
     H : (n, n_q)           rows of the velocities: H v + H_t is the rate; T and J: those of tangents and of joints
     H_t : (n,)             likewise T_t, J_t
     J_start : (n_j, n_q)   at the start of the step
@@ -163,9 +164,12 @@ class Rows:
     problem                of the contacts, with `ids`, the rows that take part
     elimination            of the joints
     blows                  that follow one another in a step
-    near, gaps, entered, joint_gaps, M, Y, S, push    of the projection: contacts that it looks at, (n_c,); gaps, now
-                           and before it, (n_c,), and (n_j,); mass, (n_q, n_q); M^-1 H^T, (n, n_q);
-                           H M^-1 H^T, (n, n); multipliers, (n,)
+
+    Of the projection:
+    near : (n_c,)          contacts that it looks at
+    gaps, entered : (n_c,)    gaps now, and before it
+    joint_gaps : (n_j,)
+    M, Y, S, push          mass, (n_q, n_q); M^-1 H^T, (n, n_q); H M^-1 H^T, (n, n); multipliers, (n,)
 
     G : (n_c, n_q), J_there : (n_j, n_q), G_t, J_t_there, S_there    rows on the joints, see `turned_rows`
 

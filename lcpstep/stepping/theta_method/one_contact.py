@@ -100,7 +100,10 @@ def met(
     m: Model, plan: Plan, s: State, c: Rows, t: float, k: int, q: float, g: float, u: float,
     v: float,
 ) -> float:  # fmt: skip
-    """Velocity after step k, which ends at t and begins with q, g and u; v: the one without contact."""
+    """Velocity after step k, which ends at t and begins with q, g and u; v: the one without contact.
+
+    It is active as by `theta_step.predict_active`, to the last bit.
+    """
     G, g_t, closed, p = m.G[0], -m.motion_now[1], s.closed[0], 0.0
     s.v_free[0], c.H[0], c.H_t[0] = v, G, g_t  # what a control by a tolerance looks at
     gap = g + 0.5 * plan.h * u

@@ -50,7 +50,7 @@ def impulses(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, r
 
 
 def pose(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, rebounds: bool) -> bool:
-    """The problem of the rows that take part, joints eliminated; whether it is an impact."""
+    """The problem of the rows that take part, joints eliminated; whether it is an impact, as `rates` says."""
     impact = rates(m, s, c, n_a, rebounds)
     without_joints(m.linear, plan, s, c, n_a)
     if c.turning and put_rows_on_joints(c.elimination, m, plan, s, c, n_a, n_a + c.n_f, t_next):
@@ -127,7 +127,8 @@ def loads_nothing(s: State, c: Rows, n_a: int) -> bool:
 
 
 def rates(m: Model, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
-    """What the impulses are asked for, of every row that takes part; whether it is an impact.
+    """What the impulses are asked for, of every row that takes part; whether friction, or contacts in turn, take it
+    as an impact: without these nobody asks.
 
     `c.blows.v` and `c.blows.u` are `s.v_free` and `s.u` (`Blows.begin`), unless blows follow one another. What is
     held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, they are asked

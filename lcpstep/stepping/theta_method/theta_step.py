@@ -106,7 +106,7 @@ def drifted(m: Model, plan: Plan, s: State, c: Rows, i: int, t: float) -> float:
 
 
 def closes_again(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> bool:
-    """Make those contacts active that were left out, were closed before, and are entered; were there any?
+    """Add to the active ones those contacts that were closed before, and are entered; were there any?
 
     A projected gap is zero, not below, so that the prediction g + (h/2) u alone would open what rests.
     """
@@ -125,7 +125,10 @@ def closes_again(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> bool
 
 
 def step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> int:
-    """One step with the active contacts into next_q, next_v, and the impulses."""
+    """One step with the active contacts into next_q, next_v, and the impulses; nothing is predicted or logged.
+
+    It may be made several times, as by `closes_again`, and anew once a named solver has solved its problem.
+    """
     if not begin_step(m, plan, s, c, t, t_next):
         return NOT_FINITE
     code = iterate(m, plan, s, c, t, t_next)
