@@ -287,3 +287,18 @@ def test_a_body_that_nothing_presses_does_not_ask_when_another_leaves():
     leaves = m.impacts[m.impacts.kind == Kind.RELEASE]
     np.testing.assert_array_equal(leaves.contact, [0])
     np.testing.assert_allclose(leaves.time, 1e-3, rtol=1e-12)
+
+
+@by_every_method
+def test_what_nothing_presses_slides_on_as_it_is_drawn_where_it_keeps_up_with_its_belt(name):
+    """A body on a spring, as fast as the belt where it is fastest: then it begins to slide, by the spring."""
+
+    def spring(t, q, v, p, out):
+        out[0], out[1] = -10.0 * q[0], 0.0
+
+    (method, close), w = METHODS[name], math.sqrt(5.0)
+    contacts = LinearContacts([[0.0, 1.0]], friction=Coulomb(0.5, [[1.0, 0.0]], slip=[-1.0]))
+    scene = Scene(System(2, 2.0 * np.eye(2), spring), [0.0, 0.0], [-1.0, 0.0], (0.0, 2.0), contacts)
+    for m in (simulate(scene, method), simulate(scene, Located(1e-2))):
+        assert m.status is Status.DONE
+        np.testing.assert_allclose(m.q[-1], [-math.sin(2.0 * w) / w, 0.0], atol=max(close, 1e-4))

@@ -41,7 +41,7 @@ from lcpstep.events.rows.keep import keep, keep_event
 from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 from lcpstep.kernels.vectors import clear, copy, copy_indices
-from lcpstep.pointers import max, min
+from lcpstep.pointers import Doubles, after, max, min
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
 LOOK_AHEAD, FURTHER = 1e-6, 10.0
@@ -169,8 +169,10 @@ def seek_modes(s: Rubbing, t: float) -> int:
         code = reconsider(s, t, longest)
     if code == DONE and undecided(s):
         copy_indices(s.tried, s.new_mode, s.n_c)
+        copy(after(s.samples, 2 * s.n_c), s.new_direction, s.n_c)
         code = look_on(s, t, longest)
         if code == DONE:
+            slide_as_now(s, after(s.samples, 2 * s.n_c))
             tell_left(s, t)
     clear(s.doubt, s.n_r)
     copy(s.terms, s.samples, 2 * s.n_c)
@@ -207,6 +209,13 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
     if code != DONE:
         return code
     return DONE if measure(s, t, s.y) else NOT_FINITE
+
+
+def slide_as_now(s: Rubbing, direction: Doubles) -> None:
+    """What begins to slide by the forces of the base state does so in their direction, whenever its load begins."""
+    for c in range(s.n_c):
+        if s.tried[c] == SLIDES and s.new_mode[c] == SLIDES:
+            s.new_direction[c] = direction[c]
 
 
 def tell_left(s: Rubbing, t: float) -> None:
