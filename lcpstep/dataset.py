@@ -7,34 +7,46 @@ import importlib
 import json
 import os
 import shutil
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from lagrangian import HybridScene, Scene
+from lagrangian.labels import common_unit, own_unit
 from lcpstep.files import replacing
 from lcpstep.simulation import Method
 
 COMPRESSION = {"zlib": True, "complevel": 4}
 FULL = 65536  # bytes: a disk with less than that has had no space for a dataset
-UNITS = {  # of the variables that results are made of
-    "q": "m", "v": "m/s", "impact_phase": "1", "impact_before": "m/s", "impact_after": "m/s", "rpm": "1/min",
+UNITS = {  # of variables that results are made of, where lengths are in metres
+    "impulse": "N s", "joint_impulse": "N s", "friction_impulse": "N s", "impact_impulse": "N s",
+    "impact_before": "m/s", "impact_after": "m/s",
 }  # fmt: skip
+FIXED = {"t": "s", "impact_time": "s", "switch_time": "s", "impact_phase": "1", "rpm": "1/min"}
+
+
+def units(labels: Sequence[str]) -> dict[str, str]:
+    """Units of variables of a scene with these labels; those of coordinates are its own."""
+    n = len(labels) // 2
+    known = {name: own_unit(unit, labels) for name, unit in UNITS.items()}
+    own = {"q": labels[:n], "v": labels[n:]}
+    return known | {name: common_unit(of) or ", ".join(of) for name, of in own.items()}
 
 
 def labelled(
     variables: Mapping[str, tuple[tuple[str, ...], Any]],
     coordinates: Mapping[str, Any],
     attributes: Mapping[str, Any],
-    units: Mapping[str, str] | None = None,
+    units: Mapping[str, str] = MappingProxyType({}),
 ) -> Any:
     """Dataset of named arrays (dimensions, values) with their units."""
     import xarray
 
     data = xarray.Dataset(dict(variables), coords=dict(coordinates), attrs=dict(attributes))
     for name in data.variables:
-        unit = {**UNITS, **(units or {})}.get(str(name))
-        if unit is not None:
+        unit = {**FIXED, **units}.get(str(name))
+        if unit:
             data[name].attrs["units"] = unit
     return data
 

@@ -30,7 +30,7 @@ from lcpstep.errors import LcpStepError, NotWritten
 from lcpstep.files import file_path, replacing
 from lcpstep.simulation import Method, simulate
 from lcpstep.stepping.located import Located, require_exact
-from lcpstep.trajectory import Kind, Status
+from lcpstep.trajectory import Status, blows
 
 ENDING = ".fmu"
 OWN = ("lagrangian", "lcpstep")  # installed where the unit runs
@@ -111,7 +111,7 @@ class Motion:
             q, v, log = np.asarray(s.q0), np.asarray(s.v0), None
         else:
             q, v = self.run.at(t)
-            log = self.run.impacts[(self.run.impacts.time <= t) & (self.run.impacts.kind == Kind.IMPACT)]
+            log = blows(self.run.impacts[self.run.impacts.time <= t])
         impulses: NDArray[np.float64] = np.zeros(s.n_c)
         if log is not None:
             np.add.at(impulses, log.contact, log.impulse)

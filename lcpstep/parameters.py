@@ -32,7 +32,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import HybridScene, Scene, checks
-from lagrangian.labels import common_unit
+from lagrangian.labels import common_unit, own_unit
 from lcpstep import dataset
 from lcpstep.errors import LcpStepError, SimulationError, UnknownName
 from lcpstep.events import EventDriven
@@ -40,7 +40,7 @@ from lcpstep.recording import Keep
 from lcpstep.simulation import Method, simulate
 from lcpstep.stepping.located import Located
 from lcpstep.stepping.moreau import Moreau
-from lcpstep.trajectory import Kind, Status, Trajectory
+from lcpstep.trajectory import Status, Trajectory, blows
 
 METHODS: dict[str, type] = {"moreau": Moreau, "located": Located, "event-driven": EventDriven}
 TOP = ("scene", "t_end", "method", "parameters", "sweep", "outputs")
@@ -51,7 +51,7 @@ MEASURES: dict[str, tuple[str, Callable[[Any], Any]]] = {  # of a run: unit, val
     "q_end": ("m", lambda run: run.q[-1]),
     "v_end": ("m/s", lambda run: run.v[-1]),
     "t_reached": ("s", lambda run: run.t[-1]),
-    "impacts": ("1", lambda run: int(np.sum(run.impacts.kind == Kind.IMPACT))),
+    "impacts": ("1", lambda run: len(blows(run.impacts))),
     "impulse": ("N s", lambda run: float(np.sum(run.impacts.impulse))),
     "strongest": ("N s", lambda run: float(np.max(run.impacts.impulse, initial=0.0))),
     "fastest": ("m/s", lambda run: float(np.max(-run.impacts.before, initial=0.0))),
@@ -217,7 +217,7 @@ class ParameterStudy:
             values = np.array([row[name] for row in rows])
             inner = ("coordinate",) if values.ndim > 1 else ()
             variables[name] = ((*names, *inner), values.reshape((*shape, *values.shape[1:])))
-            units[name] = own.get(name, (MEASURES | ERRORS)[name][0])
+            units[name] = own.get(name) or own_unit((MEASURES | ERRORS)[name][0], scene.labels)
         coordinates = {key: np.asarray(values) for key, values in self.sweep.items()}
         attributes = dataset.provenance(scene, self.method) | {"study": self.text}
         return dataset.labelled(variables, coordinates, attributes, units)

@@ -19,7 +19,6 @@ from typing import Any
 
 import numpy as np
 
-from lagrangian.labels import common_unit, length_unit
 from lagrangian.scenes import SCENES
 from lcpstep import dataset, functions
 from lcpstep.described import COLUMNS, Builder, Describer
@@ -35,10 +34,6 @@ DIMENSIONS = {  # of the arrays that every run has
     "joint_impulse": ("t", "joint"), "friction_impulse": ("t", "contact"),
     "x": ("t", "state"), "mode": ("t",),
 }  # fmt: skip
-UNITS = {
-    "t": "s", "q": "m", "v": "m/s", "impulse": "N s", "joint_impulse": "N s", "friction_impulse": "N s",
-    "impact_time": "s", "impact_before": "m/s", "impact_after": "m/s", "impact_impulse": "N s", "switch_time": "s",
-}  # fmt: skip
 
 
 def to_xarray(run: Any) -> Any:
@@ -52,7 +47,7 @@ def to_xarray(run: Any) -> Any:
         lines = getattr(run, log, None)
         if lines is not None:
             variables |= {f"{start}_{name}": _column(start, lines[name]) for name in lines.dtype.names}
-    data = dataset.labelled(variables, {"t": run.t}, {}, _units(run.scene))
+    data = dataset.labelled(variables, {"t": run.t}, {}, dataset.units(run.scene.labels))
     return data.assign_attrs(_attributes(run))
 
 
@@ -102,7 +97,10 @@ def save(run: Any, path: str | Path, *, overwrite: bool = False) -> Path:
     lengths = {"t": len(run.t)}
     variables = {name: (_dimensions(name, x, lengths), x) for name, x in arrays.items() if name != "t"}
     data = dataset.labelled(
-        variables, {"t": ("t", arrays["t"])} if "t" in arrays else {}, attributes, _units(run.scene)
+        variables,
+        {"t": ("t", arrays["t"])} if "t" in arrays else {},
+        attributes,
+        dataset.units(run.scene.labels),
     )
     for x in data.variables.values():
         x.encoding["_FillValue"] = None  # numbers are written as they are
@@ -255,18 +253,6 @@ def _attributes(run: Any) -> dict[str, Any]:
         "status": run.status.name, "message": run.message, "doubt": getattr(run, "doubt", ""),
         "counts": json.dumps(counts),
     }  # fmt: skip
-
-
-def _units(scene: Any) -> dict[str, str]:
-    """Units of the variables; those of coordinates are the scene's own."""
-    n = getattr(scene, "n_q", None)
-    if n is None:
-        return UNITS
-    own, length = {"q": scene.labels[:n], "v": scene.labels[n:]}, length_unit(scene.coordinates)
-    known = UNITS
-    if length != "m":  # the unit of forces is not known, then
-        known = {name: x.replace("m/s", f"{length}/s") for name, x in UNITS.items() if x != "N s"}
-    return known | {name: common_unit(labels) or ", ".join(labels) for name, labels in own.items()}
 
 
 def _dimensions(name: str, x: np.ndarray, lengths: dict[str, int]) -> tuple[str, ...]:

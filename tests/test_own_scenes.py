@@ -1,5 +1,7 @@
 """Scenes in files: written, run, changed; and one line for each thing that can be wrong with them."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -104,3 +106,15 @@ def test_other_commands_take_files_too(folder, capsys):
     status, out, err = run(capsys, "compare", mine, "--h", 1e-3, "--no-pictures")
     assert (status, err) == (DONE, "")
     assert "event-driven at a tolerance of 1e-13" in out
+
+
+def test_a_report_has_the_unit_of_length_of_the_scene(folder, capsys):
+    (folder / "drop.py").write_text(
+        "from lagrangian import LinearContacts, LinearSystem, Scene\n\n\ndef scene():\n"
+        "    return Scene(LinearSystem(1.0, force=-9810.0), q0=10.0, v0=0.0, t_span=(0.0, 0.1),\n"
+        "                 contacts=LinearContacts(1.0), coordinates=['height [mm]'])\n"
+    )
+    status, out, _ = run(capsys, "simulate", "drop.py", "--energy", "--method", "event-driven")
+    assert status == DONE
+    assert re.search(r"largest penetration \S+ mm\n", out)
+    assert not re.search(r" (J|m)\b", out)

@@ -10,6 +10,7 @@ import pytest
 
 from lagrangian import labels, scenes
 from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, energy, simulate
+from lcpstep.accuracy.compare import compare
 from lcpstep.accuracy.work_precision import Level, Study
 from lcpstep.cli import own, parser
 from lcpstep.cli.common import DONE
@@ -122,8 +123,53 @@ def test_lengths_in_millimetres_are_called_so_everywhere():
         assert data.impact_before.attrs["units"] == f"{unit}/s"
         assert data.impact_impulse.attrs.get("units") == ("N s" if metres else None)
         assert motion.plot().axes[2].get_ylabel() == ("impulse [N s]" if metres else "impulse")
-    assert labels.length_unit(("x [mm]", "y [mm]", "angle [rad]")) == "mm"
-    assert labels.length_unit(("x [mm]", "y [m]")) == "m"
+    rates = ("", "", "")
+    assert labels.own_unit("m", ("x [mm]", "y [mm]", "angle [rad]", *rates)) == "mm"
+    assert labels.own_unit("m/s", ("x [mm]", "y [m]", *rates[:2])) == "m/s"
+    assert labels.own_unit("J", ("x [mm]", "v [mm/s]")) == ""
+    assert labels.own_unit("s", ("x [mm]", "v [mm/s]")) == "s"
+
+
+def test_studies_of_a_motion_in_millimetres_say_so():
+    """No axis of a diagram, section, basin, orbit, attractor or comparison has metres, and no variable."""
+    from lcpstep.analysis.attractors import attractors
+    from lcpstep.analysis.basins import basins
+    from lcpstep.analysis.bifurcation import bifurcation
+    from lcpstep.analysis.orbits import periodic_orbit
+    from lcpstep.cli.attractor import _dataset
+    from lcpstep.explore.views import impact_labels
+    from lcpstep.maps import sections
+    from lcpstep.plot.attractors import attractors as attractors_drawn
+    from lcpstep.plot.basins import basins as basins_drawn
+    from lcpstep.plot.bifurcation import bifurcation as diagram_drawn
+    from lcpstep.plot.motion import portraits, time_series
+    from lcpstep.plot.sections import maps
+
+    def make(**parameters):
+        return replace(scenes.impact_oscillator(**parameters, t_end=1.0), coordinates=["x [mm]"])
+
+    scene, method = make(), EventDriven()
+    diagram = bifurcation(make, "omega", [2.8, 3.0], drop=5, keep=2)
+    found = attractors(scene, method, [[0.0, 0.0]], transient=100, window=40, longest=8)
+    basin = basins(scene, [-1.0, -1.0], [0.0, 1.0], (4, 4), known=found, sample=0)
+    compared = [compare(scene, Located(1e-2), method)]
+    units = {"q": "mm", "v": "mm/s", "impact_before": "mm/s", "impact_after": "mm/s"}
+    for data in (diagram, basin, _dataset(scene, method, found, 0)):
+        for name in units.keys() & set(data.variables):
+            assert data[name].attrs["units"] == units[name]
+    figures = (
+        diagram_drawn(diagram, show=["speed", "position", "velocity"]),
+        maps({"one": sections(scene, method, 4, 1)}, ""),
+        attractors_drawn({"one": found.found}, "", [], scene.labels),
+        basins_drawn(basin),
+        orbits.orbit(periodic_orbit(scene, found.found[0].points[0], found.found[0].periods)),
+        time_series(compared, [""]),
+        portraits(compared, [""]),
+    )
+    told = [label for figure in figures for ax in figure.axes for label in (ax.get_xlabel(), ax.get_ylabel())]
+    told += [*impact_labels(scene), str(simulate(scene, Located(1e-2), error=True).error)]
+    assert sum("[mm" in x for x in told) == 20
+    assert not [x for x in told if re.search(r"\[m\b|N s|J\b", x)]
 
 
 def test_names_of_modes_cover_no_curve():

@@ -272,10 +272,11 @@ MEASURES = (
 
 def units(scene: Scene) -> dict[str, str]:
     """Unit of each measure on a scene, where its coordinates have one in common; "1" for numbers."""
-    q, v = labels.units(scene.labels)
+    q, v, energy = labels.units(scene.labels)
+    impulse, length = (labels.own_unit(x, scene.labels) for x in ("N s", "m"))
     return {
-        "sup_position": q, "l1_velocity": q, "graph_distance": v, "impact_time": "s", "impact_impulse": "N s",
-        "unmatched": "1", "energy": "J", "penetration": "m",
+        "sup_position": q, "l1_velocity": q, "graph_distance": v, "impact_time": "s",
+        "impact_impulse": impulse or "own units", "unmatched": "1", "energy": energy, "penetration": length,
     }  # fmt: skip
 
 

@@ -35,7 +35,7 @@ from lcpstep.analysis.cells import OBSTACLE, UNKNOWN, Cells, Grid
 from lcpstep.analysis.neighbourhoods import neighbourhoods
 from lcpstep.analysis.search import search
 from lcpstep.analysis.starts import outside, random_starts
-from lcpstep.dataset import Progress, labelled, provenance
+from lcpstep.dataset import Progress, labelled, provenance, units
 from lcpstep.described import checksum
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import INSIDE, Targets, at_once, periodic, periods
@@ -256,6 +256,7 @@ class _Study:
             },
             {"q": g.centres(cells[: g.n_q])[:, 0], "v": g.centres(cells[: g.n_v] * g.n_q)[:, 1]},
             attributes,
+            units(self.scene.labels),
         )
 
     def error(self, label: Ints, k: int, admissible: int) -> float:

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import HybridScene, Scene, checks
 from lcpstep.analysis.listed import joined, listed
-from lcpstep.dataset import Progress, check_free, labelled, provenance
+from lcpstep.dataset import Progress, check_free, labelled, provenance, units
 from lcpstep.described import checksum, checksum_of
 from lcpstep.events import EventDriven
 from lcpstep.maps.batch import INSIDE, periods, section
@@ -257,4 +257,5 @@ class _Study:
         attributes = {k: v for k, v in self.inputs(first).items() if k not in ("values", "box")}
         attributes |= {"labels": list(first.labels), "modes": int(isinstance(first, HybridScene))}
         attributes |= {"box": self.box.ravel()} if self.start == "random" else {}
-        return labelled(variables, {self.parameter: self.values}, attributes)
+        own = {} if attributes["modes"] else units(first.labels)
+        return labelled(variables, {self.parameter: self.values}, attributes, own)

@@ -24,7 +24,7 @@ from lcpstep.cli.studies import (
     study_scene,
     work_bar,
 )
-from lcpstep.dataset import labelled, provenance
+from lcpstep.dataset import labelled, provenance, units
 from lcpstep.maps.batch import periodic
 from lcpstep.plot import attractors as pictures
 from lcpstep.plot.words import method_words, scene_words
@@ -187,4 +187,5 @@ def _dataset(scene: Any, method: Any, found: Attractors, seed: int) -> Any:
         "start": (("run", "state"), found.starts),
         "label": (("run",), found.label),
     }
-    return labelled(variables, {}, provenance(scene, method) | found.settings | {"seed": seed})
+    own = {} if isinstance(scene, HybridScene) else units(scene.labels)
+    return labelled(variables, {}, provenance(scene, method) | found.settings | {"seed": seed}, own)

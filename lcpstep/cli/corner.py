@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lagrangian.labels import own_unit
 from lcpstep import EventDriven, simulate
 from lcpstep.analysis.border_collision import BorderCollision, PiecewiseLinearMap, classify, diagram
 from lcpstep.analysis.chattering import Crossing, corner_crossings
@@ -33,6 +34,7 @@ from lcpstep.cli.studies import share_bar, work_bar
 from lcpstep.errors import LcpStepError
 from lcpstep.maps import StroboscopicMap
 from lcpstep.pace import counted
+from lcpstep.plot.words import on_section
 
 Array = NDArray[np.float64]
 TRANSIENT = 300  # periods until the orbit to start from has settled
@@ -120,7 +122,7 @@ def run_corner(options: argparse.Namespace) -> int:
         save_text(json.dumps(result | {"diagrams": data}, indent=1), options.out / "corner.json")
         if not options.no_picture:
             _draw(options, orbit, values, local, full, branches, found.words)
-    print(json.dumps(result, indent=2) if options.json else _text(result))
+    print(json.dumps(result, indent=2) if options.json else _text(result, orbit.scene.labels))
     _tell_files(options, "corner.json", *([] if options.no_picture else ["corner.png"]))
     return DONE if not options.prove or result["proof"]["proved"] else FAILED
 
@@ -173,7 +175,7 @@ def _result(
     }
 
 
-def _text(r: dict[str, Any]) -> str:
+def _text(r: dict[str, Any], labels: Sequence[str]) -> str:
     def rows(name: str) -> str:
         """The entries of one matrix, with the decimals that are known."""
         value, off = np.array(r["map"][name]), max(r["map_error"][name], float(np.finfo(float).tiny))
@@ -183,7 +185,8 @@ def _text(r: dict[str, Any]) -> str:
 
     lines = [
         f"{r['scene']}: an impact meets corner {r['corner']} at {r['parameter']} = {r['value']:.9f}",
-        f"  phase {r['phase']:.9f} of the period, gap velocity {r['before']:.9g} -> {r['after']:.9g} m/s",
+        f"  phase {r['phase']:.9f} of the period, gap velocity {r['before']:.9g} -> {r['after']:.9g} "
+        f"{own_unit('m/s', labels)}",
         f"  state on the section [{', '.join(f'{x:.12g}' for x in r['state'])}], residual {r['residual']:.1e}",
         "local map in deviations (dx, dp), impact before (-) and after (+) the corner:",
         *(f"  {name:10}  {rows(name)}" for name in ("A_minus", "A_plus", "B_minus", "B_plus", "C")),
@@ -240,7 +243,7 @@ def _draw(
     from lcpstep.plot.corners import diagrams
 
     title = f"{orbit.scene.name}: corner impact at {options.parameter} = {orbit.p:.6f}, {words}"
-    names = (options.parameter, "position on the section [m]")
+    names = (options.parameter, on_section(orbit.scene.labels[0]))
     figure = diagrams(values, local, full, orbit.p, names, title, branches)
     save_figure(figure, options.out / "corner.png")
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import HybridScene, checks
+from lagrangian.labels import own_unit
 from lcpstep import dataset
 from lcpstep.analysis.branch_data import TAKEN, branch_dataset
 from lcpstep.analysis.continuation import Steps
@@ -266,7 +267,11 @@ def _print(orbit: PeriodicOrbit) -> None:
     if least < len(orbit.x):
         print(f"it repeats after {least} of these {len(orbit.x)} periods already (--periods {least})")
     print("states on the section: " + "; ".join(str(x.tolist()) for x in orbit.x))
-    event, unit = ("switch", "") if isinstance(orbit.scene, HybridScene) else ("impact", " m/s")
+    event, unit = (
+        ("switch", "")
+        if isinstance(orbit.scene, HybridScene)
+        else ("impact", f" {own_unit('m/s', orbit.scene.labels)}")
+    )
     rate = "rate of the guard" if event == "switch" else "gap velocity"
     for phase, before, after in zip(orbit.phases, orbit.before, orbit.after, strict=True):
         print(f"{event} at phase {phase:.12f}: {rate} {before:.9g} -> {after:.9g}{unit}")

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import HybridScene
+from lagrangian.labels import own_unit, units
 from lcpstep import energy, simulate
 from lcpstep.cli import interrupt
 from lcpstep.cli.common import (
@@ -235,27 +236,29 @@ def _balance(run: Trajectory) -> dict[str, Any]:
 
 
 def _sentence(run: Trajectory, balance: dict[str, Any]) -> str:
-    s = _summary(run)
+    s, length, joule = _summary(run), own_unit("m", run.scene.labels), units(run.scene.labels)[2]
     events = ", ".join(f"{n} {kind}" for kind, n in s["events"].items())
     return (
         f"{s['scene']} by {s['method']}: {s['status']}, {s['message']}\n"
         f"t = {s['t_end']:g} s, q = {s['q_end']}, v = {s['v_end']}\n"
         f"{s['steps']} steps, {s['lcp_calls']} complementarity problems; events: {events}\n"
-        f"largest penetration {s['penetration']:.3g} m"
-        + (f", joint drift {s['joint_drift']:.3g} m" if run.scene.n_j else "")
-        + "".join(f"\nenergy: {_words(e)}" for e in balance.values())
+        f"largest penetration {s['penetration']:.3g} {length}"
+        + (f", joint drift {s['joint_drift']:.3g} {length}" if run.scene.n_j else "")
+        + "".join(f"\nenergy: {_words(e, joule)}" for e in balance.values())
         + (f"\nerror bar: {run.error}" if run.error else "")
     )
 
 
-def _words(e: dict[str, Any]) -> str:
+def _words(e: dict[str, Any], unit: str) -> str:
     parts = ", ".join(
         f"{name} {e[name]:.6g}" for name in ("work", "obstacles", "damping", "impacts", "friction") if e[name]
     )
-    created = f"; {e['steps_that_created']} steps created {e['created_at_contacts']:.3g} J at their contacts"
+    created = (
+        f"; {e['steps_that_created']} steps created {e['created_at_contacts']:.3g} {unit} at their contacts"
+    )
     return (
-        f"{e['start']:.6g} J -> {e['end']:.6g} J ({parts or 'no exchange'}), residual {e['residual']:.2g} J"
-        + (created if e["steps_that_created"] else "")
+        f"{e['start']:.6g} {unit} -> {e['end']:.6g} {unit} ({parts or 'no exchange'}), "
+        f"residual {e['residual']:.2g} {unit}" + (created if e["steps_that_created"] else "")
     )
 
 

@@ -106,7 +106,8 @@ class ErrorBar:
     def __str__(self) -> str:
         parts = [f"position {self.position}", f"velocity {self.velocity}", f"energy {self.energy}"]
         if math.isfinite(self.latest):
-            parts.append(f"impacts {self.latest:.2g} s and {self.strongest:.2g} N s")
+            unit = "N s" if self.energy.unit == "J" else "own units"
+            parts.append(f"impacts {self.latest:.2g} s and {self.strongest:.2g} {unit}")
         end = f"; known up to t = {self.until:.6g} s: {self.reason}" if self.reason else ""
         return f"{', '.join(parts)} (by {'; '.join(self.companions) or 'no companion'}){end}"
 

@@ -126,8 +126,8 @@ def distance(
         integral[:, n_q:] += _of_jumps(m, runs, look, _hidden(between, times, look.kept[0]), around)
     elif not look.nodes and len(windows):
         integral[:, n_q:] = math.nan  # where impacts fall between kept states
-    q, v = units(runs[0].scene.labels)
-    columns = ((slice(0, n_q), q), (slice(n_q, 2 * n_q), v), (slice(2 * n_q, None), "J"))
+    q, v, energy = units(runs[0].scene.labels)
+    columns = ((slice(0, n_q), q), (slice(n_q, 2 * n_q), v), (slice(2 * n_q, None), energy))
     position, velocity, power = (Bar(largest[:, c], integral[:, c], unit) for c, unit in columns)
     least = AT_REST * falls * length + STILL * float(floor[:n_q].max())
     return Distance(position, velocity, power, left_out, max(size, least))

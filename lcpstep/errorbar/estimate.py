@@ -116,10 +116,10 @@ def unknown(run: Trajectory, reason: str) -> ErrorBar:
     """The bar of a run that has none."""
     start = run.t[:1] if len(run.t) else np.array(run.scene.t_span[:1])
     missing = np.full(len(run.impacts), math.nan)
-    n_q, (q, v) = run.scene.n_q, units(run.scene.labels)
+    n_q, (q, v, joule) = run.scene.n_q, units(run.scene.labels)
     position, velocity, energy = (
         Bar(np.full((1, k), math.inf), np.full((1, k), math.inf), unit)
-        for k, unit in ((n_q, q), (n_q, v), (1, "J"))
+        for k, unit in ((n_q, q), (n_q, v), (1, joule))
     )
     at = float(start[0])
     nothing = np.zeros((0, 2))

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.trajectory import Kind, Trajectory
+from lagrangian.labels import own_unit
+from lcpstep.trajectory import Trajectory, blows
 
 Array = NDArray[np.float64]
 SAMPLES = 3000  # of a curve
@@ -38,9 +39,8 @@ def curves(run: Trajectory) -> Curves:
 
 
 def impacts(run: Trajectory) -> Any:
-    """The last impacts of the log."""
-    log = run.impacts
-    return log[log.kind == Kind.IMPACT][-MOST:]
+    """The last blows of the log."""
+    return blows(run.impacts)[-MOST:]
 
 
 def impact_map(run: Trajectory) -> tuple[Array, Array, NDArray[np.int64]]:
@@ -60,9 +60,10 @@ def impact_map(run: Trajectory) -> tuple[Array, Array, NDArray[np.int64]]:
 
 def impact_labels(scene: Scene) -> tuple[str, str]:
     """Names of the axes of the map of impacts."""
+    unit = own_unit("m/s", scene.labels)
     if math.isfinite(scene.period):
-        return "phase of the impact", "speed before it [m/s]"
-    return "speed before an impact [m/s]", "speed before the next [m/s]"
+        return "phase of the impact", f"speed before it [{unit}]"
+    return f"speed before an impact [{unit}]", f"speed before the next [{unit}]"
 
 
 def rectangle(run: Trajectory) -> tuple[Array, Array]:

@@ -28,6 +28,7 @@ class Sections:
     phase : (n,)   time of each impact within its period, as a share of T in [0, 1)
     before, after : (n,)   gap velocities at each impact [m/s]
     q, v : (m, n_q)   states at the times k T
+    labels : of the states, with their units
     """
 
     phase: Array
@@ -35,6 +36,7 @@ class Sections:
     after: Array
     q: Array
     v: Array
+    labels: tuple[str, ...]
 
 
 def sections(
@@ -57,4 +59,4 @@ def sections(
     long = replace(scene, t_span=(0.0, periods * scene.period))
     run = simulate(long, method, keep=times, progress=progress)
     log = run.impacts[(run.impacts.kind == Kind.IMPACT) & (run.impacts.time > times[0])]
-    return Sections((log.time / scene.period) % 1.0, log.before, log.after, run.q, run.v)
+    return Sections((log.time / scene.period) % 1.0, log.before, log.after, run.q, run.v, scene.labels)

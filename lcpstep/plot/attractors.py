@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import checks
+from lagrangian.labels import own_unit
 from lcpstep.plot import looks
 from lcpstep.plot.bifurcation import LETTERS
 
@@ -41,7 +42,7 @@ def attractors(
     figure.suptitle(title)
     grid = figure.subplots(len(rows), 2, sharex="col", sharey="col", squeeze=False)
     for (left, right), (method, found) in zip(grid, rows.items(), strict=True):
-        impact_panel(left, found, corners)
+        impact_panel(left, found, corners, labels)
         section_panel(right, found, labels)
         event = "switches" if any(a.modes for a in found) else "impacts"
         left.set_title(f"{event}: {method}", fontsize=10)
@@ -49,7 +50,9 @@ def attractors(
     return figure
 
 
-def impact_panel(ax: Any, found: Sequence[Any], corners: Sequence[float] = ()) -> None:
+def impact_panel(
+    ax: Any, found: Sequence[Any], corners: Sequence[float] = (), labels: Sequence[str] = LABELS
+) -> None:
     """Phase and velocity after each impact, coloured by its number in the period; rate before each switch."""
     phase, after, number = (
         np.concatenate([getattr(a, f"impact_{name}") for a in found] or [np.zeros(0)])
@@ -68,7 +71,8 @@ def impact_panel(ax: Any, found: Sequence[Any], corners: Sequence[float] = ()) -
         ax.annotate(LETTERS[k % len(LETTERS)], (corner, 1.0), (1.5, -4.0 - 7.0 * (k % 2)), va="top", fontsize=7,
                     xycoords=("data", "axes fraction"), textcoords="offset points", color="C0")  # fmt: skip
     modes = any(a.modes for a in found)
-    event, rate = ("switch", "rate of the guard before") if modes else ("impact", "gap velocity after [m/s]")
+    rate = "rate of the guard before" if modes else f"gap velocity after [{own_unit('m/s', labels)}]"
+    event = "switch" if modes else "impact"
     ax.set(xlabel="phase of the forcing [periods]", ylabel=rate, xlim=(0.0, 1.0))
     ax.tick_params(labelbottom=True)
     ax.grid(alpha=0.3)

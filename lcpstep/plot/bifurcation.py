@@ -13,13 +13,14 @@ from typing import Any
 import numpy as np
 
 from lagrangian import checks
-from lcpstep.plot.words import parameter_label
+from lagrangian.labels import own_unit
+from lcpstep.plot.words import on_section, parameter_label
 
 PANELS = {
     "phase": "phase of impacts [periods]",
-    "speed": "gap velocity\nbefore impacts [m/s]",
-    "position": "position\non the section [m]",
-    "velocity": "velocity\non the section [m/s]",
+    "speed": "gap velocity\nbefore impacts",
+    "position": "position\non the section",
+    "velocity": "velocity\non the section",
     "accumulation": "accumulation points:\nphase [periods]",
     "impacts": "impacts per period",
 }
@@ -126,9 +127,12 @@ def label(data: Any, name: str) -> str:
     """What a panel shows, with its unit; states by their own names, and switches where a scene has modes."""
     labels = data.attrs["labels"]
     if name in PLACES:
-        words, bracket, unit = labels[PLACES[name] * (len(labels) // 2)].partition(" [")
-        return f"{words}\non the section{bracket}{unit}"
-    return MODES.get(name, PANELS[name]) if data.attrs["modes"] else PANELS[name]
+        return on_section(labels[PLACES[name] * (len(labels) // 2)]).replace(
+            " on the section", "\non the section"
+        )
+    if data.attrs["modes"]:
+        return MODES.get(name, PANELS[name])
+    return PANELS[name] + (f" [{own_unit('m/s', labels)}]" if name == "speed" else "")
 
 
 def phases_shown(phases: np.ndarray) -> tuple[float, float]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from lagrangian import checks
 from lagrangian.drawing import Circle, Drawing, Point, Polygon, Shape, drawn, extent, places
-from lagrangian.labels import length_unit
+from lagrangian.labels import own_unit
 from lcpstep.errors import LcpStepError, NotWritten
 from lcpstep.files import file_path, replacing
 from lcpstep.plot.player import page
@@ -213,7 +213,7 @@ def _pictures(film: Film, shapes: list[list[Shape]], glow: NDArray[np.float64]) 
     top = 1.0 - WORDS / size[1]
     figure = Figure(figsize=size, dpi=DPI, layout=ConstrainedLayoutEngine(rect=(0.0, 0.0, 1.0, top)))
     canvas, ax = FigureCanvasAgg(figure), figure.subplots()
-    unit = length_unit(getattr(film.run.scene, "coordinates", ()))
+    unit = own_unit("m", film.run.scene.labels)
     ax.set(xlim=(x0, x1), ylim=(y0, y1), xlabel=f"x [{unit}]", ylabel=f"y [{unit}]")
     ax.set_aspect("equal", adjustable="box")
     ax.locator_params(axis="x", nbins=int(np.clip(6.0 * (x1 - x0) / (y1 - y0), 2, 9)))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from lagrangian import checks
-from lagrangian.labels import common_unit, length_unit
+from lagrangian.labels import common_unit, own_unit
 from lcpstep.accuracy.compare import Comparison
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
 from lcpstep.plot import looks
@@ -40,11 +40,12 @@ def time_series(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any
         t = np.linspace(exact.t[0], exact.t[-1], SAMPLES)
         axes[2 * k].plot(t, exact.at(t)[0][:, 0], "k-", lw=1.8, label=method_words(exact.method))
         axes[2 * k].plot(fast.t, fast.q[:, 0], "C1--", lw=1.1, label=method_words(fast.method))
-        axes[2 * k].set(title=title, ylabel="position q [m]")
+        axes[2 * k].set(title=title, ylabel=exact.scene.labels[0])
         axes[2 * k].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, fontsize=8, frameon=False)
         axes[2 * k].title.set(x=0.0, ha="left")
         distance.semilogy(fast.t[: len(c.difference)], np.abs(c.difference[:, 0]), "C3-", lw=0.7)
-        distance.set(ylabel="|Δq| [m]", xlabel="time t [s]")
+        unit = common_unit(exact.scene.labels[:1])
+        distance.set(ylabel=f"|Δq| [{unit}]" if unit else "|Δq|", xlabel="time t [s]")
         distance.set_ylim(bottom=max(c.sup_q, 1e-16) * DECADES)
         for ax in (axes[2 * k], distance):
             ax.set_xlim(exact.t[0], exact.t[-1])
@@ -61,8 +62,9 @@ def portraits(comparisons: Sequence[Comparison], titles: Sequence[str]) -> Any:
     for row, c, title in zip(grid, comparisons, titles, strict=True):
         for ax, run in zip(row, (c.fast.trajectory, c.reference.trajectory), strict=True):
             portrait(ax, run)
-            ax.set(title=f"{title}: {method_words(run.method)}", xlabel="position q [m]")
-        row[0].set_ylabel("velocity v [m/s]")
+            labels = run.scene.labels
+            ax.set(title=f"{title}: {method_words(run.method)}", xlabel=labels[0])
+        row[0].set_ylabel(labels[len(labels) // 2])
     return figure
 
 
@@ -168,8 +170,8 @@ def _impulses(ax: Any, run: Trajectory | HybridTrajectory) -> None:
         ax.set_yticks([])
     if run.scene.n_c > 1:
         _legend(ax, stems, [f"contact {c}" for c in np.unique(jumps.contact)])
-    metres = length_unit(getattr(run.scene, "coordinates", ())) == "m"
-    ax.set_ylabel("impulse [N s]" if metres else "impulse")
+    unit = own_unit("N s", run.scene.labels)
+    ax.set_ylabel(f"impulse [{unit}]" if unit else "impulse")
 
 
 def _legend(ax: Any, handles: Any, names: Sequence[str]) -> None:

@@ -15,7 +15,7 @@ from lcpstep.analysis.orbits import PeriodicOrbit
 from lcpstep.plot import looks
 from lcpstep.plot.lift import absolute
 from lcpstep.plot.words import names_of, parameter_label
-from lcpstep.trajectory import Kind
+from lcpstep.trajectory import blows
 
 Array = NDArray[np.float64]
 SAMPLES = 2000
@@ -126,7 +126,7 @@ def orbit(found: PeriodicOrbit, title: str = "") -> Any:
     start = found.phase * T
     run = found.run()
     modes = isinstance(found.scene, HybridScene)
-    jumps = run.switches.time if modes else run.impacts.time[run.impacts.kind == Kind.IMPACT]
+    jumps = (run.switches if modes else blows(run.impacts)).time
     t = np.unique(
         np.concatenate([np.linspace(start, start + n * T, SAMPLES * n), jumps, np.nextafter(jumps, start)])
     )
@@ -141,8 +141,7 @@ def orbit(found: PeriodicOrbit, title: str = "") -> Any:
         motion_panel(left, found.scene, t, x[:, :across], x[:, across:])
     for time in jumps:
         left.axvline(time / T, color="0.85", lw=0.8, zorder=0)
-    state_panel(right, t, x[:, 0], x[:, across], jumps)
-    right.set(xlabel=found.scene.labels[0], ylabel=found.scene.labels[across])
+    state_panel(right, found.scene, t, x[:, 0], x[:, across], jumps)
     right.plot(found.x[:, 0], found.x[:, across], "C3o", ms=4, label=f"section at phase {found.phase:.4g}")
     right.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), frameon=False)
     return figure
@@ -184,11 +183,11 @@ def _legend_above(ax: Any) -> None:
     ax.legend(fontsize=8, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, frameon=False)
 
 
-def state_panel(ax: Any, t: Array, q: Array, v: Array, jumps: Array) -> None:
+def state_panel(ax: Any, scene: Any, t: Array, q: Array, v: Array, jumps: Array) -> None:
     """The path in the plane of position and velocity, its jumps in grey."""
     landed = np.searchsorted(t, jumps)
     landed = landed[(landed > 0) & (landed < len(t))]
     ax.plot([q[landed - 1], q[landed]], [v[landed - 1], v[landed]], color="0.7", lw=0.8)
     ax.plot(np.insert(q, landed, np.nan), np.insert(v, landed, np.nan), "C0-", lw=1.2)
-    ax.set(xlabel="position [m]", ylabel="velocity [m/s]")
+    ax.set(xlabel=scene.labels[0], ylabel=scene.labels[scene.n_x // 2])
     ax.grid(alpha=0.3)

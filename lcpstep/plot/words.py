@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from lagrangian import HybridScene
-from lcpstep.dataset import UNITS
 
 DPI = 150
 FEW = 6  # parameters that a title has room for
@@ -26,8 +25,13 @@ def method_words(method: Any) -> str:
 
 def parameter_label(name: str) -> str:
     """The parameter's name with its unit, where it has one."""
-    unit = {"rpm": "rpm"}.get(name, UNITS.get(name))
-    return "cam speed [rpm]" if name == "rpm" else f"{name} [{unit}]" if unit else name
+    return "cam speed [rpm]" if name == "rpm" else name
+
+
+def on_section(label: str) -> str:
+    """What a named state is called on the section: "position on the section [m]"."""
+    words, bracket, unit = label.partition(" [")
+    return f"{words} on the section{bracket}{unit}"
 
 
 def names_of(scene: Any) -> tuple[str, str]:

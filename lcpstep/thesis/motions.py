@@ -154,5 +154,5 @@ def draw_orbit(left: Any, right: Any, orbit: PeriodicOrbit) -> None:
     t = np.unique(np.concatenate([np.linspace(t0, t1, 3000), jumps, np.nextafter(jumps, t0)]))
     q, v = run.at(t)
     motion_panel(left, orbit.scene, t, q, v)
-    state_panel(right, t, q[:, 0], v[:, 0], jumps)
+    state_panel(right, orbit.scene, t, q[:, 0], v[:, 0], jumps)
     right.plot(orbit.x[:, 0], orbit.x[:, 1], "C3o", ms=4)

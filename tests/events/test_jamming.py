@@ -10,6 +10,9 @@ from hypothesis import strategies as st
 from lagrangian import Contacts, Coulomb, LinearContacts, LinearSystem, Scene, scenes
 from lagrangian.scenes.rough_contacts import critical_friction
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, energy, simulate
+from lcpstep.explore import views
+from lcpstep.export import Motion
+from lcpstep.parameters import MEASURES
 
 ASKED = EventDriven(1e-11, 1e-11, jamming="impact")
 
@@ -187,3 +190,14 @@ def test_a_disc_that_a_blow_or_hops_leave_in_a_rough_corner_rests_there(method, 
     assert run.status.name == "DONE"
     np.testing.assert_allclose(run.q[-1, :2], 0.25, rtol=0, atol=1e-9)
     np.testing.assert_allclose(run.v[-1], 0.0, rtol=0, atol=1e-12)
+
+
+def test_a_jam_counts_as_a_blow_wherever_blows_are_counted_and_drawn():
+    """In a unit of FMI, on the page, in studies."""
+    scene = rod(mu=1.8, angle=1.1)
+    run, motion = simulate(scene, ASKED), Motion(scene, ASKED)
+    motion.go_to(1e-3)
+    assert motion.value("impacts") == 1.0
+    assert motion.value("impulse0") == run.impacts.impulse[0] > 0.3
+    assert MEASURES["impacts"][1](run) == 1
+    assert list(views.impacts(run).kind) == [Kind.JAM]
