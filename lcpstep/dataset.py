@@ -96,7 +96,6 @@ def save(data: Any, file: Path | str, *, overwrite: bool = False) -> Path:
     check_new(file, overwrite)
     packed = {name: COMPRESSION for name, x in data.data_vars.items() if x.size > 1 and x.dtype.kind in "fiu"}
     with replacing(file) as draft:
-        file.parent.mkdir(parents=True, exist_ok=True)
         try:
             data.to_netcdf(draft, engine="netcdf4", encoding=packed)
         except (RuntimeError, PermissionError) as error:  # what the library makes of a disk that is full

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
 from lcpstep.described import Describer
-from lcpstep.errors import LcpStepError, NotWritten
+from lcpstep.errors import LcpStepError
 from lcpstep.files import file_path, replacing
 from lcpstep.simulation import Method, simulate
 from lcpstep.stepping.located import Located, require_exact
@@ -180,10 +180,6 @@ def fmu(scene: Scene, path: str | Path, method: Method | None = None) -> Path:
         script = Path(folder) / f"{name}.py"
         script.write_text(UNIT.format(name=name, title=title, motion=motion))
         made = FmuBuilder.build_FMU(script, folder, project_files=_modules(scene))
-        if not path.parent.is_dir():
-            raise NotWritten(
-                path, FileNotFoundError(2, f"there is no folder {str(path.parent)!r}; make it first")
-            )
         with replacing(path) as draft:
             draft.write_bytes(Path(made).read_bytes())
     return path

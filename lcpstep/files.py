@@ -26,12 +26,14 @@ def file_path(path: object) -> Path:
 def replacing(file: Path | str) -> Generator[Path, None, None]:
     """A path beside `file` to write to, with the same ending; it takes the place of `file` at the end.
 
+    Folders that are missing are made.
+
     Until then, and for good where anything fails, `file` is what it was: missing, or the old one. A link stays a link
     to the new file, which has the permissions of the old. What is no regular file is written to as it is.
 
     Raises
     ------
-    NotWritten   an OSError while writing: no space, no such folder, no permission
+    NotWritten   an OSError while writing: no space, no permission, no folder
     """
     file = Path(file)
     target = Path(os.path.realpath(file))
@@ -40,6 +42,7 @@ def replacing(file: Path | str) -> Generator[Path, None, None]:
     DRAFTS.add(draft)
     try:
         try:
+            target.parent.mkdir(parents=True, exist_ok=True)
             yield target if special else draft
             if not special:
                 _settle(draft, target)

@@ -130,7 +130,6 @@ def written(places: list[Path], name: str, content: bytes, failures: list[str]) 
     for folder in places:
         try:
             with replacing(folder / name) as draft:
-                folder.mkdir(parents=True, exist_ok=True)
                 draft.write_bytes(content)
             return folder
         except NotWritten as error:

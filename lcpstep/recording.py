@@ -59,7 +59,8 @@ class Kept:
             raise ValueError(f"keep: expected increasing times, got {keep!r}") from None
         n_dim = getattr(keep, "ndim", 1 if hasattr(keep, "__len__") else 0)
         if n_dim != 1 or len(times) == 0 or not (times[1:] > times[:-1]).all():
-            raise ValueError("keep: expected increasing times in an array of one dimension")
+            got = checks.shown(np.asarray(keep))
+            raise ValueError(f"keep: expected increasing times, one at least, in one dimension, got {got}")
         if not (t_span[0] <= times[0] and times[-1] <= t_span[1]):
             raise ValueError(f"keep: expected times within the span {t_span}, got {times[0]} .. {times[-1]}")
         return cls(0, False, times)

@@ -197,7 +197,6 @@ class Store:
             LOG.warning("%s is damaged and is written again", manifest)
         elif self.folder.exists() and any(not x.name.startswith(".") for x in self.folder.iterdir()):
             raise FileExistsError(f"out: {self.folder} exists and is no folder of this sweep")
-        self.folder.mkdir(parents=True, exist_ok=True)
         with replacing(manifest) as draft:
             text = json.dumps({"sweep": inputs, "digest": self.digest}, indent=1, sort_keys=True, default=str)
             draft.write_text(text)

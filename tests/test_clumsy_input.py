@@ -1,6 +1,7 @@
 """What is no number, no system, no method and no solver is refused by name before any step."""
 
 import math
+import re
 from dataclasses import replace
 from importlib.metadata import metadata
 
@@ -46,6 +47,9 @@ def test_what_stands_for_something_else_is_refused_by_name():
             simulate(scene, Moreau(0.1), progress=progress)
     for keep in ([0.0, True], ["0.1", "0.2"], [0.1j], None, [[0.1, 0.2]]):
         with pytest.raises(ValueError, match=r"^keep: expected increasing times"):
+            simulate(scene, Moreau(0.1), keep=keep)
+    for keep, got in (([], "[]"), (0.5, "0.5"), ([0.2, 0.1], "[0.2, 0.1]")):
+        with pytest.raises(ValueError, match=r"^keep: .* one at least, .* got " + re.escape(got)):
             simulate(scene, Moreau(0.1), keep=keep)
     for parameters in (3, [1.0], "mass"):
         with pytest.raises(TypeError, match=r"^parameters: expected names and values"):

@@ -182,5 +182,15 @@ def test_what_is_no_file_is_written_to_as_it_is(tmp_path):
     assert not os.path.isfile("/dev/null")
     with pytest.raises(NotWritten, match="/dev/full could not be written"), replacing("/dev/full") as draft:
         draft.write_text("nowhere")
-    with pytest.raises(NotWritten, match="No such file"), replacing(tmp_path / "no" / "a.txt") as draft:
+
+
+def test_folders_that_are_missing_are_made_and_what_is_none_is_named(tmp_path):
+    with replacing(tmp_path / "new" / "one" / "a.txt") as draft:
+        draft.write_text("here")
+    inside = tmp_path / "new" / "one" / "a.txt" / "b.txt"
+    with (
+        pytest.raises(NotWritten, match=r"b\.txt could not be written: Not a dir"),
+        replacing(inside) as draft,
+    ):
         draft.write_text("nowhere")
+    assert (tmp_path / "new" / "one" / "a.txt").read_text() == "here"

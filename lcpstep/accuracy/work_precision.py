@@ -154,7 +154,6 @@ class Study:
         if path.suffix not in (".json", ".csv"):
             raise ValueError(f"save: expected a name that ends in .json or .csv, got {path.name!r}")
         with replacing(path) as draft:
-            path.parent.mkdir(parents=True, exist_ok=True)
             if path.suffix == ".json":
                 stored = self.as_dict()
                 draft.write_text(json.dumps(stored | {"checksum": checksum(stored)}, indent=1) + "\n")

@@ -188,9 +188,8 @@ def save_film(run: Any, file: Path) -> None:
 
 
 def save_text(text: str, file: Path) -> None:
-    """Write a text, its folder included, or leave the file that is there as it is."""
+    """Write a text, or leave the file that is there as it is."""
     with replacing(file) as draft:
-        file.parent.mkdir(parents=True, exist_ok=True)
         draft.write_text(text + "\n")
     interrupt.wrote(file)
 

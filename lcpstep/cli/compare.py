@@ -243,7 +243,6 @@ def _draw(
         corners = [float(c) / scene.period for c in np.asarray(scene.corners)]
         title = f"cam-follower at {options.map_rpm:g} rpm, {options.map_periods} periods"
         figures[f"maps-{options.map_rpm:g}-rpm.png"] = maps(found, title, corners[FLANK_NOSE], corners)
-    options.out.mkdir(parents=True, exist_ok=True)
     for name, figure in figures.items():
         save_figure(figure, options.out / name)
     return [options.out / name for name in figures]

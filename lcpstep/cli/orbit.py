@@ -117,7 +117,6 @@ def run_orbit(options: argparse.Namespace) -> int:
     orbit = _found(options, motion, shoot, lambda orbit: orbit.x)
     _print(orbit)
     if options.draw:
-        drawn.parent.mkdir(parents=True, exist_ok=True)
         kind = "stable" if orbit.stable else "unstable"
         title = title_of(scene, f"{orbit.name}, {kind}", method)
         save_figure(pictures.orbit(orbit, title), drawn)

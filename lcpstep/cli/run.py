@@ -77,7 +77,6 @@ def _keeper(folder: Path, overwrite: bool) -> Any:
     """What saves every run."""
 
     def keep(k: int, run: Trajectory) -> None:
-        folder.mkdir(parents=True, exist_ok=True)
         run.save(folder / NAME.format(k), overwrite=overwrite)
 
     return keep

@@ -153,8 +153,6 @@ def _check_pictures(options: argparse.Namespace) -> None:
             raise ValueError(
                 f"--{name}: expected a name that ends in {', '.join(endings)}, got {str(file)!r}"
             )
-        if not file.parent.is_dir():
-            raise ValueError(f"--{name}: there is no folder {str(file.parent)!r}; make it first")
     if options.film is not None and options.film.suffix == ".mp4" and shutil.which("ffmpeg") is None:
         raise ValueError(
             f"--film: {options.film} needs ffmpeg, which is not on the PATH; install it, or write .gif or .html"

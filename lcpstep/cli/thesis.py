@@ -48,7 +48,6 @@ def run_thesis(options: argparse.Namespace) -> int:
     if options.page is not None:
         if options.page.exists() and not options.overwrite:
             raise FileExistsError(f"--page: {options.page} exists already; --overwrite replaces it")
-        options.page.parent.mkdir(parents=True, exist_ok=True)
         with work_bar("numbers") as name_stage:
 
             def told(name: str) -> None:

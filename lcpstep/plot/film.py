@@ -10,7 +10,7 @@ import io
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from lagrangian import checks
 from lagrangian.drawing import Circle, Drawing, Point, Polygon, Shape, drawn, extent, places
 from lagrangian.labels import own_unit
-from lcpstep.errors import LcpStepError, NotWritten
+from lcpstep.errors import LcpStepError
 from lcpstep.files import file_path, replacing
 from lcpstep.plot.player import page
 from lcpstep.trajectory import blows
@@ -37,7 +37,7 @@ DPI = 100
 WORDS = 0.34  # above the axes are left to a line of words [inch]
 BODY, FIXED, STRUCK = (0.12, 0.47, 0.71), (0.35, 0.35, 0.35), (0.84, 0.15, 0.16)
 COLOURS = 64  # of a GIF
-FASTEST = 50  # pictures of it in a second
+FASTEST = 50  # pictures of it in a second: players slow down what is quicker
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,17 +74,14 @@ class Film:
         ------
         ValueError   the name ends in something else
         LcpStepError   the drawing fails, or there is no ffmpeg
-        NotWritten   no such folder, no permission, no space
+        NotWritten   no permission, no space
         """
         path = file_path(path)
         writer = _writer(path)
-        if not path.parent.is_dir():
-            raise NotWritten(
-                path, FileNotFoundError(2, f"there is no folder {str(path.parent)!r}; make it first")
-            )
+        film = replace(self, fps=min(self.fps, FASTEST)) if path.suffix == ".gif" else self
         with replacing(path) as draft:
             draft.touch()
-            writer(draft, self._told(progress), self.fps)
+            writer(draft, film._told(progress), film.fps)
         return path
 
     def frames(self) -> Iterator[Pixels]:
@@ -169,10 +166,9 @@ def _writer(path: Path) -> Callable[[Path, Iterator[Pixels], int], None]:
 
 
 def _gif(draft: Path, pictures: Iterator[Pixels], fps: int) -> None:
-    """Pictures last whole hundredths of a second, and no less than two: players slow down what is quicker."""
-    every = -(-fps // FASTEST)
-    images = [_in_few_colours(x) for k, x in enumerate(pictures) if k % every == 0]
-    shown = 10 * np.diff(np.round(100.0 * every / fps * np.arange(len(images) + 1))).astype(int)
+    """Pictures last whole hundredths of a second."""
+    images = [_in_few_colours(x) for x in pictures]
+    shown = 10 * np.diff(np.round(100.0 / fps * np.arange(len(images) + 1))).astype(int)
     images[0].save(draft, save_all=True, append_images=images[1:], duration=shown.tolist(), loop=0)
 
 

@@ -116,7 +116,6 @@ def make(
         if file.exists() and not overwrite:
             raise FileExistsError(f"--out: {file} exists already; --overwrite replaces it")
     figure, data = FIGURES[name].make()
-    out.mkdir(parents=True, exist_ok=True)
     written = [files[kind] for kind in ("png", "svg") if kind in kinds]
     for file in written:
         with replacing(file) as draft:
