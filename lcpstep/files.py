@@ -42,7 +42,7 @@ def replacing(file: Path | str) -> Generator[Path, None, None]:
     DRAFTS.add(draft)
     try:
         try:
-            target.parent.mkdir(parents=True, exist_ok=True)
+            file.parent.mkdir(parents=True, exist_ok=True)
             yield target if special else draft
             if not special:
                 _settle(draft, target)

@@ -166,7 +166,7 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     if start not in SIGNATURES:
         raise DamagedFile(f"{path}: expected a run written by Trajectory.save, and this is no NetCDF file")
     try:
-        with xarray.open_dataset(path, engine="netcdf4", decode_cf=False, cache=False) as data:
+        with xarray.open_dataset(path.absolute(), engine="netcdf4", decode_cf=False, cache=False) as data:
             arrays = {str(name): np.asarray(x.values) for name, x in data.variables.items()}
             sha = data.attrs.get(CHECKSUM)
     except Exception as error:  # what the libraries below make of damage is not known

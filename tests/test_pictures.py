@@ -215,3 +215,13 @@ def test_a_measure_without_a_finite_value_has_no_panel():
     found = Study(question, "", {"impact_time": np.inf}, 1.0, "", levels=levels)
     shown = work_precision(found).axes
     assert [ax.get_ylabel() for ax in shown] == ["sup position", ""]
+
+
+def test_each_mark_of_a_study_has_one_meaning():
+    level = {"method": "m", "settings": "", "dial": "h", "status": "DONE", "seconds": 1.0}
+    reasons = ({"limited": ("energy",)}, {"rounded": ("energy",)}, {"separated": True}, {})
+    levels = [Level(value=0.1, errors={"energy": 1.0}, **level, **reason) for reason in reasons]
+    told = str(Study({"scene": "ball", "measures": ["energy"]}, "", {}, 1.0, "", levels=levels)).splitlines()
+    marks = [line.split("1.00e+00")[1] for line in told if "1.00e+00" in line]
+    assert marks == ["~", "=", "!", ""]
+    assert [line[0] for line in told if line[:2] in ("~ ", "= ", "! ")] == marks[:3]

@@ -239,7 +239,7 @@ def test_what_is_no_run_is_said_to_be_none(tmp_path):
         load(tmp_path)
 
 
-def test_names_folders_and_files_that_are_there(tmp_path):
+def test_names_folders_and_files_that_are_there(tmp_path, monkeypatch):
     run = simulate(scenes.bouncing_ball(t_end=0.1), Moreau(0.01))
     with pytest.raises(ValueError, match=r"path: expected a name that ends in \.nc"):
         run.save(tmp_path / "run.npz")
@@ -247,6 +247,9 @@ def test_names_folders_and_files_that_are_there(tmp_path):
     with pytest.raises(FileExistsError, match=r"run\.nc exists already"):
         run.save(tmp_path / "run.nc")
     run.save(tmp_path / "run.nc", overwrite=True)
+    monkeypatch.chdir(tmp_path)
+    for name in ("~/run.nc", "new/../run of mine.nc", "-ü #1.nc"):  # all as they stand
+        assert np.array_equal(load(run.save(name)).q, run.q)
     (tmp_path / "file").write_text("")
     with pytest.raises(NotWritten, match=r"run\.nc could not be written"):
         run.save(tmp_path / "file" / "run.nc")

@@ -224,8 +224,8 @@ class Study:
         lines += [f"reference: {self.reference}", f"growth: {self.growth}"]
         if any(x.limited for x in self.levels):
             lines.append("~ the reference is not known well enough for this error")
-        if any(x.rounded for x in self.levels):
-            lines.append("~ this error is rounding, and falls no further")
+        if any(set(x.rounded) - set(x.limited) for x in self.levels):
+            lines.append("= this error is rounding, and falls no further")
         if any(x.separated for x in self.levels):
             lines.append("! the motion has lost the reference: this error says only how large the motion is")
         return "\n".join([*lines, *(f"note: {x}" for x in self.notes)])
@@ -251,8 +251,11 @@ def _row(x: Level, shown: Iterable[str]) -> list[str]:
     if x.status != "DONE":
         return [*row, x.status, *[""] * (3 + len(list(shown)))]
     row += [f"{x.seconds:.3g}", *(f"{n:.0f}" for n in (x.steps, x.lcp_calls, x.force_evaluations))]
-    marks = {m: "~" if m in x.limited + x.rounded else "!" if x.separated else "" for m in shown}
-    return row + [f"{x.errors[m]:.2e}{marks[m]}" if m in x.errors else "" for m in shown]
+    return row + [f"{x.errors[m]:.2e}{_mark(x, m)}" if m in x.errors else "" for m in shown]
+
+
+def _mark(x: Level, measure: str) -> str:
+    return "~" if measure in x.limited else "=" if measure in x.rounded else "!" if x.separated else ""
 
 
 def _plain(x: Any) -> Any:

@@ -37,8 +37,12 @@ def add(commands: Any) -> None:
         epilog="Example: lcpstep basin cam-follower --rpm 358.5 --grid 1000 1000 --out out",
     )
     study_arguments(p)
-    p.add_argument("--position", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range [m]")
-    p.add_argument("--velocity", type=float, nargs=2, metavar=("LOW", "HIGH"), help="range [m/s]")
+    p.add_argument(
+        "--position", type=float, nargs=2, metavar=("LOW", "HIGH"), help="in the unit of the scene"
+    )
+    p.add_argument(
+        "--velocity", type=float, nargs=2, metavar=("LOW", "HIGH"), help="in the unit of the scene"
+    )
     p.add_argument(
         "--grid", type=int, nargs=2, default=(200, 200), metavar=("NQ", "NV"), help="cells (200 200)"
     )
