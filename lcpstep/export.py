@@ -11,7 +11,9 @@ from __future__ import annotations
 import atexit
 import base64
 import ctypes
+import hashlib
 import inspect
+import keyword
 import pickle
 import re
 import sys
@@ -173,12 +175,16 @@ def fmu(scene: Scene, path: str | Path, method: Method | None = None) -> Path:
     method = Located((end - start) / 1000.0) if method is None else method
     if isinstance(method, Located) and method.order == "exact":
         require_exact(scene)
-    name = re.sub(r"\W", "_", path.stem)
+    name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
+    if keyword.iskeyword(name) or not name.isidentifier() or name in UNIT:
+        name = f"unit_{name}"
     motion = base64.b64encode(pickle.dumps(Motion(scene, method))).decode()
     title = f"{scene.name} by {method!r}".replace("\\", "/").replace('"', "'").replace("\n", " ")
     with tempfile.TemporaryDirectory() as folder:
-        script = Path(folder) / f"{name}.py"
-        script.write_text(UNIT.format(name=name, title=title, motion=motion))
+        text = UNIT.format(name=name, title=title, motion=motion).encode()
+        # A Python that runs several units imports each by a name of its own, and none in place of another module
+        script = Path(folder) / f"lcpstep_{hashlib.sha256(text).hexdigest()[:16]}.py"
+        script.write_bytes(text)
         made = FmuBuilder.build_FMU(script, folder, project_files=_modules(scene))
         with replacing(path) as draft:
             draft.write_bytes(Path(made).read_bytes())

@@ -1,6 +1,8 @@
 """A scene as a functional mock-up unit, stepped by FMPy: the outputs are those of one run."""
 
+import re
 import sys
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -73,6 +75,39 @@ def test_a_run_by_fmpy_is_the_run_by_located_and_comes_to_rest(tmp_path):
     assert got[:, 2] == pytest.approx(v[:, 0], abs=1e-12)
     assert tuple(got[-1, 1:3]) == (0.0, 0.0)
     assert got[-1, 3] > 10
+
+
+SEVERAL = """
+import fmpy
+from lagrangian import scenes
+from lcpstep.export import fmu
+for h0, name in ((1.0, "ball"), (2.0, "ball"), (3.0, "numpy"), (4.0, "3 bälle")):
+    file = fmu(scenes.bouncing_ball(h0=h0), f"{name}.fmu")
+    print(fmpy.simulate_fmu(str(file), stop_time=0.1)["q0"][-1])
+"""
+
+
+@pytest.mark.slow
+def test_units_in_one_python_are_each_their_own_whatever_their_names(tmp_path, monkeypatch):
+    pytest.importorskip("pythonfmu3")
+    pytest.importorskip("fmpy")
+    monkeypatch.chdir(tmp_path)
+    fallen = 0.5 * 9.81 * 0.1**2
+    assert [float(x) + fallen for x in python(SEVERAL).split()] == pytest.approx([1.0, 2.0, 3.0, 4.0])
+
+
+@pytest.mark.parametrize("name", ["ball", "3 bälle", "class", "pickle", "numpy"])
+def test_a_unit_has_a_module_of_its_own_and_a_name_that_is_one(tmp_path, name):
+    pytest.importorskip("pythonfmu3")
+    modules = set()
+    for height in (1.0, 2.0):
+        file = fmu(scenes.bouncing_ball(h0=height), tmp_path / "new" / f"{name}.fmu")
+        with ZipFile(file) as unit:
+            modules.add(unit.read("resources/slavemodule.txt"))
+            described = unit.read("modelDescription.xml").decode()
+        assert re.fullmatch(r"[A-Za-z_]\w*", re.search('modelIdentifier="(.*?)"', described)[1], re.ASCII)
+    assert len(modules) == 2
+    assert name.encode() not in modules
 
 
 ENDS = """
