@@ -118,3 +118,14 @@ def test_a_report_has_the_unit_of_length_of_the_scene(folder, capsys):
     assert status == DONE
     assert re.search(r"largest penetration \S+ mm\n", out)
     assert not re.search(r" (J|m)\b", out)
+
+
+def test_a_film_of_a_scene_without_a_drawing_is_refused_before_the_run(folder, capsys):
+    (folder / "bare.py").write_text(
+        "from lagrangian import LinearSystem, Scene\n\n\ndef scene():\n"
+        "    return Scene(LinearSystem(1.0), 0.0, 1.0, (0.0, 1.0))\n"
+    )
+    status, _, err = run(capsys, "simulate", "bare.py", "--film", "bare.gif", "--out", "bare.nc")
+    assert status == USAGE
+    assert "--film: 'scene' has no drawing" in err
+    assert not (folder / "bare.nc").exists()

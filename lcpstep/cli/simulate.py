@@ -97,7 +97,7 @@ def run_simulate(options: argparse.Namespace) -> int:
     _refuse_what_does_not_apply(options)
     method = METHODS[options.method](options)
     options.out = _checked_name(options.out, options.overwrite)
-    _check_pictures(options)
+    _check_pictures(options, scene)
     try:
         with progress_bar(scene, options.method) as progress:
             run = simulate(scene, method, keep=options.every, progress=progress, error=options.error)
@@ -144,7 +144,7 @@ def _checked_name(file: Path | None, overwrite: bool) -> Path | None:
     return file
 
 
-def _check_pictures(options: argparse.Namespace) -> None:
+def _check_pictures(options: argparse.Namespace, scene: Any) -> None:
     """ValueError for a picture or a film that could not be written after the run."""
     for name, file, endings in (("picture", options.picture, DRAWN), ("film", options.film, FILMED)):
         if file is None:
@@ -153,6 +153,10 @@ def _check_pictures(options: argparse.Namespace) -> None:
             raise ValueError(
                 f"--{name}: expected a name that ends in {', '.join(endings)}, got {str(file)!r}"
             )
+    if options.film is not None and scene.drawing is None:
+        raise ValueError(
+            f"--film: {scene.name!r} has no drawing; give the scene a function f(t, q) that draws it"
+        )
     if options.film is not None and options.film.suffix == ".mp4" and shutil.which("ffmpeg") is None:
         raise ValueError(
             f"--film: {options.film} needs ffmpeg, which is not on the PATH; install it, or write .gif or .html"
