@@ -40,8 +40,8 @@ class EventRun(Run):
 
     @property
     def done(self) -> int:
-        """Steps taken."""
-        return int(self.tally.steps)
+        """Steps, and parts of steps, taken."""
+        return int(self.tally.steps + self.tally.parts)
 
     @property
     def ahead(self) -> Array:

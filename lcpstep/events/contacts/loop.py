@@ -60,7 +60,8 @@ class Course(Events):
         """Whether there is an event, or the motion goes on."""
         if self.s.rows.next != MOVE:
             return DUE
-        return AHEAD if self.s.clock.t0 < self.s.clock.t_end and self.clock.tally.steps < goal else ARRIVED
+        taken = self.clock.tally.steps + self.clock.tally.parts
+        return AHEAD if self.s.clock.t0 < self.s.clock.t_end and taken < goal else ARRIVED
 
     def happen(self) -> int:
         """The event, or what follows from it; a status."""
@@ -119,8 +120,9 @@ def go_further(s: Rubbing) -> int:
 
 def progress(s: Rubbing) -> int:
     """One step of the motion, up to an event; those that take no time are counted, for rounding may ask for them."""
-    t = s.clock.t0
+    t, steps = s.clock.t0, s.clock.tally.steps
     code = s.proceed()
+    s.clock.tally.parts += s.clock.tally.steps == steps
     if code == DONE and s.rows.n_kept < s.n_j and come_apart(s):
         code = JOINTS_FAILED
     moment = max(NO_TIME * s.scan_length, s.clock.untold(0.0))
