@@ -140,7 +140,7 @@ def jump_times(source: Source, a: Array, b: Array, least: float = 0.0) -> tuple[
     start, end, between = first, last, np.ones(len(a), dtype=bool)
     for _ in range(HALVINGS if len(a) else 0):
         middle = 0.5 * (a + b)
-        at = source.values(middle)[np.arange(len(a)), row, 1]
+        at = source.values_told(middle)[np.arange(len(a)), row, 1]
         between &= np.maximum(np.abs(at - start), np.abs(at - end)) <= 1.5 * whole  # or it is a pulse
         early = np.abs(at - first) < np.abs(at - last)
         a, first = np.where(early, middle, a), np.where(early, at, first)

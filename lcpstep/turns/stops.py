@@ -25,6 +25,7 @@ PER_PERIOD, PER_SPAN = 16, 50  # intervals of the scan in a period, or in a span
 SHORT = 0.25  # of them: leaves that are shorter are looked at by themselves
 EVEN = 0.5  # of the largest curve: by how much it may change where no look is needed
 NEAR = 1e-12  # of the period: stops that are one
+ROUNDING = 1e-15  # of a corner: it is where its function jumps, which may be just after it
 KEPT = 256  # scenes whose stops are remembered
 
 
@@ -94,6 +95,8 @@ def _remembered(
     per = PER_PERIOD if math.isfinite(period) else PER_SPAN
     base = (span[1] - span[0]) / per
     own = np.array([x for x in corners if span[0] < x < span[1]])
+    for key in keys:
+        own = at_jumps(key.source, own, span)
     ends = np.unique(np.concatenate([[span[0]], own, [span[1]]]))
     stops, exact, stretches, words = [np.array(corners)], [own], [np.zeros((0, 2))], []
     for key in keys:
@@ -138,6 +141,18 @@ def jump_at(source: Source, found: Leaves, ends: Array) -> Array:
     fastest = float(np.max(np.abs(source.values(found.a)[..., 1])))
     jumps, _ = jump_times(source, start - beside, start + beside, LITTLE / JUMP * fastest)
     return start[jumps]
+
+
+def at_jumps(source: Source, corners: Array, span: tuple[float, float]) -> Array:
+    """The corners, those that only the rounding of a sum tells from a jump of a speed at the jump itself.
+
+    Beyond a corner that is early, be it by ten roundings, what rests on an obstacle would go along through its jump.
+    """
+    beside = 2.0 * APART * np.maximum(span[1] - span[0], np.abs(corners))
+    jumps, times = jump_times(source, corners - beside, corners + beside)
+    moved = corners.copy()
+    moved[jumps] = times
+    return np.where(np.abs(moved - corners) > ROUNDING * np.abs(corners), moved, corners)
 
 
 def _divided(source: Source, ends: Array, base: float) -> tuple[Source, Leaves | None]:
