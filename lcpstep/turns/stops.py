@@ -94,11 +94,13 @@ def _remembered(
     """The same, of all that moves."""
     per = PER_PERIOD if math.isfinite(period) else PER_SPAN
     base = (span[1] - span[0]) / per
-    own = np.array([x for x in corners if span[0] < x < span[1]])
+    named = np.array(corners)
+    inside = (span[0] < named) & (named < span[1])
     for key in keys:
-        own = at_jumps(key.source, own, span)
+        named[inside] = at_jumps(key.source, named[inside], span)
+    own = named[inside]
     ends = np.unique(np.concatenate([[span[0]], own, [span[1]]]))
-    stops, exact, stretches, words = [np.array(corners)], [own], [np.zeros((0, 2))], []
+    stops, exact, stretches, words = [named], [own], [np.zeros((0, 2))], []
     for key in keys:
         source, found = _divided(key.source, ends, base)
         if found is None:  # all of it turns fast, as samples show as well

@@ -50,3 +50,22 @@ def test_turns_that_no_corner_names_are_found_to_the_last_digit(method):
 def test_corners_that_are_off_by_the_rounding_of_a_sum_count_as_the_turns(method, error):
     corners = (np.arange(int(2.0 * END / TURN)) + 0.5) * 0.5 * TURN
     assert off(method, corners + error) < (1e-5 if isinstance(method, Moreau) else 1e-12)
+
+
+@pytest.mark.parametrize("error", [-3e-12, 3e-12])
+def test_so_they_do_late_where_times_have_fewer_digits(error):
+    start = 4000.0 * TURN
+    contacts = LinearContacts(1.0, motion=table)
+    times = start + (np.arange(int(2.0 * END / TURN)) + 0.5) * 0.5 * TURN
+    scene = Scene(
+        LinearSystem(1.0, force=-G),
+        0.0,
+        SPEED,
+        (start, start + END),
+        contacts,
+        p=[0.0, 0.0],
+        corners=times + error,
+    )
+    run = simulate(scene, Located(3e-2, order=4, tolerance=1e-9))
+    q = run.at(start + TIMES + 0.05)[0][:, 0]
+    assert np.max(np.abs(q - (HEIGHT + SPEED * 0.05 - 0.5 * G * 0.05**2))) < 1e-11
