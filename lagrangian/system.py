@@ -79,7 +79,8 @@ class LinearSystem(Pickled):
         A callback may depend on time alone; forces that depend on q or v belong to a `System`.
     frame : callback filling out (n_q, 3), or None
         Moving frame: q is measured relative to c(t), and out[i] = (c_i, c_i', c_i''). The equation above then
-        holds for q + c, which puts the force F - M c'' - C c' - K c on q.
+        holds for q + c, which puts the force F - M c'' - C c' - K c on q. c and c' are continuous: a jump of c' is a
+        blow that no force tells of. Where one jumps take coordinates at rest, and the obstacle's `motion`.
 
     Raises
     ------
