@@ -33,6 +33,8 @@ class Stiction:
         n_c = scene.n_c
         self.kernel, self.given = coefficients(scene), None if friction is None else friction.slip
         self.varies, self.sticks = bool(self.kernel.varies), np.zeros(n_c, dtype=bool)
+        system: Any = scene.system
+        self.M = system.M
         self.mu, self.mu_s = np.zeros((2, n_c))
         if not self.varies:
             self.measure(scene.t_span[0], np.array(scene.q0), np.zeros(n_c))
@@ -63,7 +65,7 @@ class Stiction:
         """
         tried = np.where(self.sticks, STICKS, SLIDES)
         if self.kernel.two and np.any(strikes):
-            tried[connected(coupled, strikes, problem.active)] = MEETS
+            tried[connected(self.M, coupled, problem, strikes)] = MEETS
         mu = np.where(tried == STICKS, self.mu_s, self.mu)
         while True:
             point = coupled.solve(problem._replace(mu=mu), modes, p)
@@ -95,14 +97,21 @@ class Stiction:
         return u, (problem.size + coupled.abs_R @ (point.size_x / coupled.diagonal))[T]
 
 
-def connected(c: Coupled, strikes: Any, active: Any) -> Any:
-    """Contacts (n_c,) that impulses connect with those that strike, by coordinates, joints or active contacts."""
-    from scipy.sparse import csr_array
+def connected(M: Any, c: Coupled, problem: Problem, strikes: Any) -> Any:
+    """Contacts (n_c,) that impulses connect with those that strike, by masses, joints or active contacts.
+
+    Springs and dampers carry no impulses, though a step's matrix has them, too.
+    """
+    from scipy.sparse import coo_array, csr_array
     from scipy.sparse.csgraph import connected_components
 
-    entry, total = c.A.tocoo(), c.n_q + c.n_r
-    bear = np.concatenate([np.ones(c.n_j, dtype=bool), active, active])[c.row]
-    links = np.append(entry.row, c.n_q + c.row[bear]), np.append(entry.col, c.R.indices[bear])
+    entry, total = coo_array(M), c.n_q + c.n_r
+    bear = np.concatenate([np.ones(c.n_j, dtype=bool), problem.active, problem.rough])[c.row]
+    normal = c.n_q + c.n_j + np.flatnonzero(problem.rough)
+    links = (
+        np.concatenate([entry.row, c.n_q + c.row[bear], normal]),
+        np.concatenate([entry.col, c.R.indices[bear], normal + c.n_c]),
+    )
     part = connected_components(csr_array((np.ones(len(links[0])), links), shape=(total, total)), False)[1]
     normals = part[c.n_q + c.n_j : total - c.n_c]
     return np.isin(normals, normals[strikes])

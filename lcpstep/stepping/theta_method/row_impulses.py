@@ -166,7 +166,8 @@ def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool
         return strike_in_turn(c.problem, m.restitution, n_a, n_f, -1)
     if n_f > 0 and c.coefficients.two:
         for k in range(n_a if impact else 0):
-            c.problem.sum[k] = 1.0 if c.blows.u[c.problem.ids[k]] < -c.problem.slow[k] else 0.0
+            u = c.blows.u[c.problem.ids[k]]
+            c.problem.sum[k] = -u if u < -c.problem.slow[k] else 0.0
         return solve_steps(c.problem, c.coefficients, s.sticks, c.sliding, n_a, n_f, impact)
     found = solve_contacts(c.problem, n_a, n_f)
     if found and n_f > 0 and not impact:
