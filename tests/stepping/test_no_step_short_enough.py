@@ -151,3 +151,17 @@ def test_a_body_thrown_between_two_walls_without_clearance_comes_to_rest_between
         assert run.status is Status.DONE, run.message
         assert np.max(np.abs(run.q)) <= 2.0 * tolerance
         assert abs(run.v[-1, 0]) <= tolerance
+
+
+def test_a_force_that_begins_at_zero_at_time_zero():
+    """Steps are halved until they are no time; at time zero no number of seconds is rounding of it."""
+    d = Description(
+        M=((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), q0=(-0.0756, 0.756, 0.565), v0=(0.0, 0.0, 0.0),
+        t_span=(0.0, 0.1755), h=0.00117, G=((2.5, -2.16, -0.42), (-1.64, -0.8, -0.861)), offset=(2.18726, 0.967281),
+        restitution=(0.3, 0.0), K=((123.0, 344.0, 94.6), (344.0, 1270.0, 335.0), (94.6, 335.0, 148.0)),
+        constant=(304.0102, 1123.1936, 329.55823999999996), cosine=(0.204, 0.195, 0.17), force_omega=1.1,
+        J=((0.6, 0.9, 1.1), (1.2, 1.8, -0.7)), joint_offset=(-1.25654, -0.8745800000000001), general=True,
+    )  # fmt: skip
+    m = simulate(d.scene(), Located(8.0 * d.h, 4, tolerance=1e-6))
+    assert m.status is Status.DONE
+    np.testing.assert_allclose(m.q[-1], simulate(d.scene(), EventDriven()).q[-1], atol=1e-8)

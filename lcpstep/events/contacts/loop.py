@@ -41,12 +41,10 @@ from lcpstep.events.rows.keep import keep, keep_event
 from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 from lcpstep.kernels.vectors import clear, copy, copy_indices
-from lcpstep.pointers import Doubles, after, max, min
+from lcpstep.pointers import Doubles, after, min
 
 # Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
 LOOK_AHEAD, FURTHER = 1e-6, 10.0
-# Of the interval looked at: stretches of motion this short take no time, nor do roundings of it
-NO_TIME = 2.0**-50
 
 
 class Course(Events):
@@ -125,8 +123,7 @@ def progress(s: Rubbing) -> int:
     s.clock.tally.parts += s.clock.tally.steps == steps
     if code == DONE and s.rows.n_kept < s.n_j and come_apart(s):
         code = JOINTS_FAILED
-    moment = max(NO_TIME * s.scan_length, s.clock.untold(0.0))
-    s.clock.tally.stalled = s.clock.tally.stalled + 1 if s.clock.t0 - t <= moment else 0
+    s.clock.tally.stalled = s.clock.tally.stalled + 1 if s.clock.t0 - t <= s.moment() else 0
     return code
 
 

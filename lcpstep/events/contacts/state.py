@@ -18,8 +18,10 @@ from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.dop853 import ALL
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import NOT_FINITE
-from lcpstep.pointers import after, indices_after
+from lcpstep.pointers import after, indices_after, max
 
+# Of the interval looked at: stretches of motion this short take no time, nor do roundings of it
+NO_TIME = 2.0**-50
 # Of a contact: its gap or normal force; its sliding velocity, or the two edges of its friction cone
 GUARDS = 3
 
@@ -154,6 +156,10 @@ class Rubbing(RungeKutta):
     def proceed(self) -> int:
         """Go on up to the first event, no further than a step; a status. Every way to step has its own."""
         return NOT_FINITE
+
+    def moment(self) -> float:
+        """How short a stretch of motion from the base on is no time; at time zero nothing is rounding of it."""
+        return float(max(NO_TIME * self.scan_length, self.clock.untold(0.0)))
 
     def straying_at(self, place: float, h: float, level: float) -> int:
         """`loose.straying` at that fraction of the step of size h; -1 where a state is not finite. As `proceed`."""

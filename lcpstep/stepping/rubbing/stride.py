@@ -115,7 +115,7 @@ def search(s: Strides, t: float, h: float) -> int:
             s.guard = TORN
             return DONE
         seen = s.tau != NOWHERE or (s.guard >= 0 and s.found >= 0.5) or (s.guard < 0 and not hides(s, t, h))
-        if seen or h <= s.clock.untold(0.0):
+        if seen or h <= s.moment():
             return DONE
         h *= 0.5
 
