@@ -54,7 +54,8 @@ class Blows:
         if back and self.elastic:
             return False
         self.fastest = max(self.fastest, fastest)
-        self.last = back or fastest <= LEFT * self.fastest
+        most = self.taken == TURNS * np.count_nonzero(self.active) and not self.elastic
+        self.last = back or most or fastest <= LEFT * self.fastest
         self.chosen = self.active & (self.last | (u <= self.slow))
         return True
 

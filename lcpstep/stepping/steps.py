@@ -22,7 +22,7 @@ RESTING = 1e-13  # of the size of the scene: a gap this small is closed
 TOUCHING = 1e-9  # of the way that forces push in a step: likewise, where a motion begins at rest
 UNTOLD = 4.0 * RESOLUTION  # of a time: its rounding, in which an obstacle moves on under a body
 # Blows, Newton's iteration and joints of `Moreau`
-TURNS = 200  # blows in a step of `Moreau` for each of its contacts; more go on in the next one
+TURNS = 200  # blows in a step of `Moreau` for each of its contacts; elastic ones go on in the next one
 LEFT = 1e-6  # of the fastest approach: what is slower ends in a plastic blow
 RETURNED = 2.0**-40  # of the fastest approach: blows that lead back so near to those before never end
 CONVERGED = 1e-12  # change of a velocity that is iterated for, relative to it

@@ -174,3 +174,19 @@ def test_a_table_that_leaves_no_room_below_the_ceiling_ends_the_run(way, method,
     assert run.status is Status.LCP_FAILED
     assert "approach each other with nothing left between" in run.message
     assert run.t[-1] == pytest.approx(0.2, abs=2.5e-3)
+
+
+@pytest.mark.usefixtures("sparse_steps")
+@pytest.mark.parametrize("way", ["", "sparse"])
+def test_a_light_body_keeps_heavy_ones_apart_that_close_in(way):
+    """They meet it so often that no step has the blows for it; at last all three go on together."""
+    masses, G = np.array([100.0, 1e-4, 1000.0]), np.diff(np.eye(3), axis=0)
+    M, G = (sparse.diags_array(masses), sparse.csr_array(G)) if way else (np.diag(masses), G)
+    contacts = LinearContacts(G, np.array([0.05, 0.02]), restitution=0.5)
+    scene = Scene(LinearSystem(M), [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], (0.0, 0.5), contacts)
+    together = 100.0 / np.sum(masses)
+    for h in (1e-2, 1e-3):
+        m = simulate(scene, Moreau(h))
+        assert m.status is Status.DONE
+        np.testing.assert_allclose(m.v[-1], together, rtol=1e-10)
+        assert np.min(m.q[:, 2] - m.q[:, 0]) > -0.07 - 2.0 * h

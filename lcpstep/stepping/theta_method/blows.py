@@ -9,8 +9,9 @@ next, still in the step, by the same law from the velocities at hand:
     0 <= u+ + r u  complementary to  p >= 0   on the active contacts that do not separate,     u+ = u + W p
 
 until no active contact approaches any more. Blows that ever halve what is left end in a plastic one of all contacts,
-and so do those that lose energy and go on with the speeds that they had before, as obstacles that close in feed them:
-where these leave no room there is none. Elastic ones that do so go on in the next step.
+and so do those that lose energy and go on with the speeds that they had before, as obstacles that close in feed them
+(where these leave no room there is none), or go on for too long, as of a light body between heavy ones: else these
+would pass through one another. Elastic ones that do so go on in the next step.
 No blow raises the energy, and none of them waits for a step of its own, in which bodies would move on.
 
 Source: the same sequence of problems as of impacts at one instant in `events.parabolas.modes`, `jump`.
@@ -97,7 +98,10 @@ def choose(s: State, c: Rows, b: Blows) -> bool:
 
 
 def look_back(m: Model, c: Rows, b: Blows) -> None:
-    """Where the blows have come back to the speeds of before, let no other follow, or but a plastic one."""
+    """Where blows go on without end, back at speeds of before or too many, let none follow, or but a plastic one.
+
+    Light bodies between heavy ones that close in strike them a million times.
+    """
     if b.last:
         return
     back, elastic = b.taken > 1, True
@@ -107,7 +111,7 @@ def look_back(m: Model, c: Rows, b: Blows) -> None:
         elastic = elastic and m.restitution[i] == 1.0
     if back and elastic:
         b.taken = TURNS * b.n_a
-    elif back:
+    elif back or (b.taken == TURNS * b.n_a - 1 and not elastic):
         b.ends = True
     if looks_back(b.taken):
         copy(b.u_before, b.u, c.n_c)
