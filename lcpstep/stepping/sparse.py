@@ -29,7 +29,7 @@ from lcpstep.stepping import interpolation
 from lcpstep.stepping.sparse_blows import Blows, forced, opens_and_closes
 from lcpstep.stepping.sparse_equations import Equations, Step
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, TOUCHING, UNTOLD, largest, start_side
+from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, ROUNDING, TOUCHING, UNTOLD, largest, start_side
 from lcpstep.trajectory import Counts, Kind, Status
 
 if TYPE_CHECKING:
@@ -191,7 +191,8 @@ class SparseRun(StepRun):
         w, before : (n_c,)   rates after and before it;  free : change of the velocity without contact
         """
         left = float(np.max(-w[chosen], initial=0.0))
-        if left <= PASSED * float(np.max(np.abs(before[chosen]), initial=0.0)):
+        none = ROUNDING * float(np.max(self.equations.G_rows.sizes(self.v)[chosen], initial=0.0))
+        if left <= max(none, PASSED * float(np.max(np.abs(before[chosen]), initial=0.0))):
             return False
         return left > PASSED * float(np.max(np.abs((before + self.equations.G_rows.times(free))[chosen])))
 
