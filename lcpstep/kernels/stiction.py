@@ -12,9 +12,9 @@ import cython
 
 from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.coulomb import ContactProblem, motion_of, solve_contacts
-from lcpstep.kernels.repose import contact_of, is_loaded, moves, share_evenly, stay
+from lcpstep.kernels.repose import is_loaded, moves, share_evenly, stay
 from lcpstep.kernels.vectors import clear
-from lcpstep.pointers import Doubles, Indices, abs
+from lcpstep.pointers import Doubles, Indices
 
 SLIDES, STICKS, GIVES_WAY, MEETS = range(4)  # what has been tried of a contact; the last one meets a blow
 
@@ -24,17 +24,15 @@ def solve_steps(
 ) -> bool:
     """Impulses of n_a contacts, n_f of them with tangents, into c.impulse; False where there are none.
 
-    Impacts meet mu, and so do all contacts that their impulses reach.
+    Impacts meet mu, and so do all contacts that their impulses reach (`theta_method.reached`).
 
     sticks, sliding : (n_c,)   whether a contact stuck before the step; its sliding velocity then
-    impact : whether contacts strike; these have their speeds in c.sum : (n_a,), the others 0
+    impact : whether contacts strike; these, and those reached, have the entry 1 in c.sum : (n_a,), the others 0
     """
-    while impact and reach(c, n_a, n_f):
-        pass
     for f in range(n_f):
         i = c.ids[c.carrier[f]]
         k.tried[i] = STICKS if sticks[i] == 1 else SLIDES
-        if impact and c.sum[c.carrier[f]] > 0.0:
+        if impact and c.sum[c.carrier[f]] == 1.0:
             k.tried[i] = MEETS
         c.mu[i] = k.sticking[i] if k.tried[i] == STICKS else k.sliding[i]
     while True:
@@ -46,22 +44,6 @@ def solve_steps(
             rest_where_possible(c, sticks, sliding, n_a, n_f)
         if not give_way(c, k, n_a, n_f):
             return True
-
-
-def reach(c: ContactProblem, n_a: int, n_f: int) -> bool:
-    """Pass impacts on to contacts that they move faster than the forces of the step do; whether there were any.
-
-    The springs and dampers of an implicit step are in its mobilities, too, and connect nearly everything; the shorter
-    the step, the less of a blow they pass on next to what forces do.
-    """
-    m, some = n_a + n_f, False
-    for i in range(m):
-        a = contact_of(c, i, n_a)
-        for k in range(m):
-            b, moved = contact_of(c, k, n_a), abs(c.mobility[k * m + i]) * c.sum[a]
-            if c.sum[b] == 0.0 and moved > c.slow[b] * c.mobility[i * m + i]:
-                c.sum[b], some = moved / c.mobility[i * m + i], True
-    return some
 
 
 def come_to_rest(c: ContactProblem, k: Coefficients, sliding: Doubles, n_a: int, n_f: int) -> bool:

@@ -100,7 +100,7 @@ class Stiction:
 def connected(M: Any, c: Coupled, problem: Problem, strikes: Any) -> Any:
     """Contacts (n_c,) that impulses connect with those that strike, by masses, joints or active contacts.
 
-    Springs and dampers carry no impulses, though a step's matrix has them, too.
+    Springs and dampers carry no impulses, though a step's matrix has them, too: the rule of `theta_method.reached`.
     """
     from scipy.sparse import coo_array, csr_array
     from scipy.sparse.csgraph import connected_components

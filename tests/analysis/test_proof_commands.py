@@ -67,4 +67,4 @@ def test_corner_proves_what_it_found(capsys):
     proof = json.loads(out)["proof"]
     assert proof["proved"]
     assert 673.2344450037 < proof["rpm"][0] < proof["rpm"][1] < 673.2344450039
-    assert "proved: corner of O(1, 1) at [673.2344450038" in corner._text(json.loads(out))
+    assert "proved: corner of O(1, 1) at [673.2344450038" in corner._text(json.loads(out), ["q [m]"])

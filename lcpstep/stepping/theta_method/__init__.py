@@ -1,7 +1,7 @@
 """The Moreau theta-method, as kernels.
 
 theta_loop, theta_step    the loop over steps; a step; `moving`, its constants, state and rows
-row_impulses, blows       impulses of the rows that take part; blows one after another
+row_impulses, blows       impulses of the rows that take part; blows one after another; `reached`, whom they reach
 implicit, responses       Newton's iteration of nonlinear systems; what impulses make of velocities
 one_contact               one coordinate and contact, in registers
 turned_rows, idle         beside joints: rows that they turn within the step; contacts that bear nothing by turns

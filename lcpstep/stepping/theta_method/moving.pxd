@@ -43,6 +43,6 @@ cdef class Rows:
     cdef Elimination elimination
     cdef readonly Blows blows
     cdef Doubles H, T, J, J_start, D, H_t, T_t, J_t, p, sliding, at_rest, tangent_restitution
-    cdef Indices failed, near, left_out
+    cdef Indices failed, near, left_out, hit
     cdef Doubles gaps, entered, joint_gaps, push, M, Y, S
     cdef Doubles G, J_there, G_t, J_t_there, S_there

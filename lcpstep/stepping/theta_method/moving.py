@@ -161,6 +161,7 @@ class Rows:
     tangent_restitution : (n_c,);  in_turn    see `kernels.energetic`
     failed : (n_j,)        1 for joints that contradict others
     left_out : (n_c,)      contacts that bear nothing by turns in the step at hand
+    hit : (n_q,)           coordinates that a blow moves
     problem                of the contacts, with `ids`, the rows that take part
     elimination            of the joints
     blows                  that follow one another in a step
@@ -200,9 +201,12 @@ class Rows:
         self.coefficients.use(self.problem.mu)
         self.n_c, self.n_t, self.n_j, self.n, self.n_f = n_c, n_t, n_j, n, 0
         self.projected, self.turning, self.external, self.solved = projected, not joints.flat, external, False
-        counts = {"failed": np.zeros(n_j, dtype=np.intp), "left_out": np.zeros(n_c, dtype=np.intp)}
+        counts = {
+            name: np.zeros(size, dtype=np.intp)
+            for name, size in (("failed", n_j), ("left_out", n_c), ("hit", n_q))
+        }
         self.arrays = {"p": np.zeros(n), "r_T": tangent_restitution, **counts}
-        self.left_out = indices(self.arrays["left_out"])
+        self.left_out, self.hit = indices(self.arrays["left_out"]), indices(self.arrays["hit"])
         self.tangent_restitution = doubles(tangent_restitution)
         self.p, self.failed = doubles(self.arrays["p"]), indices(self.arrays["failed"])
         self.numbers = np.zeros((n + 2 * n_j) * n_q + n + 2 * n_t)

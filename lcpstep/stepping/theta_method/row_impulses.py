@@ -19,6 +19,7 @@ from lcpstep.stepping.constraints.joint_rows import distribute, eliminate, lost
 from lcpstep.stepping.steps import CANCELLED, CONVERGED, NO_APPROACH, RESTING, ROUNDING
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
+from lcpstep.stepping.theta_method.reached import reach
 from lcpstep.stepping.theta_method.responses import respond
 from lcpstep.stepping.theta_method.turned_rows import put_rows_on_joints, sweep_out_turned
 
@@ -165,9 +166,10 @@ def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool
             c.problem.made[k] = max(0.0, c.blows.u[c.problem.ids[k]] - c.problem.rate[k])
         return strike_in_turn(c.problem, m.restitution, n_a, n_f, -1)
     if n_f > 0 and c.coefficients.two:
-        for k in range(n_a if impact else 0):
-            u = c.blows.u[c.problem.ids[k]]
-            c.problem.sum[k] = -u if u < -c.problem.slow[k] else 0.0
+        if impact:
+            for k in range(n_a):
+                c.problem.sum[k] = 1.0 if c.blows.u[c.problem.ids[k]] < -c.problem.slow[k] else 0.0
+            reach(m, s, c, n_a, n_f)
         return solve_steps(c.problem, c.coefficients, s.sticks, c.sliding, n_a, n_f, impact)
     found = solve_contacts(c.problem, n_a, n_f)
     if found and n_f > 0 and not impact:
