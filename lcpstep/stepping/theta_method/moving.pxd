@@ -32,7 +32,7 @@ cdef class Blows:
 
 cdef class Rows:
     cdef readonly object arrays
-    cdef object numbers, looked_at, repair, on_joints
+    cdef object numbers, blown, looked_at, repair, on_joints
     cdef readonly Model joints, tangents
     cdef readonly ContactProblem problem
     cdef readonly Coefficients coefficients
@@ -43,6 +43,7 @@ cdef class Rows:
     cdef Elimination elimination
     cdef readonly Blows blows
     cdef Doubles H, T, J, J_start, D, H_t, T_t, J_t, p, sliding, at_rest, tangent_restitution
-    cdef Indices failed, near, left_out, hit
+    cdef Indices failed, near, left_out, reached
+    cdef Doubles answers, mobilities, masses
     cdef Doubles gaps, entered, joint_gaps, push, M, Y, S
     cdef Doubles G, J_there, G_t, J_t_there, S_there

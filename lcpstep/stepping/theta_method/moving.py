@@ -161,7 +161,8 @@ class Rows:
     tangent_restitution : (n_c,);  in_turn    see `kernels.energetic`
     failed : (n_j,)        1 for joints that contradict others
     left_out : (n_c,)      contacts that bear nothing by turns in the step at hand
-    hit : (n_q,)           coordinates that a blow moves
+    reached, answers, mobilities, masses    whom a blow reaches, see `reached`: (n,); M^-1 H^T, (n, n_q); of each row
+                           its own, (n,); factors of M, (n_q, n_q); nothing with one coefficient of friction
     problem                of the contacts, with `ids`, the rows that take part
     elimination            of the joints
     blows                  that follow one another in a step
@@ -203,10 +204,10 @@ class Rows:
         self.projected, self.turning, self.external, self.solved = projected, not joints.flat, external, False
         counts = {
             name: np.zeros(size, dtype=np.intp)
-            for name, size in (("failed", n_j), ("left_out", n_c), ("hit", n_q))
+            for name, size in (("failed", n_j), ("left_out", n_c), ("reached", n if coefficients.two else 0))
         }
         self.arrays = {"p": np.zeros(n), "r_T": tangent_restitution, **counts}
-        self.left_out, self.hit = indices(self.arrays["left_out"]), indices(self.arrays["hit"])
+        self.left_out, self.reached = indices(self.arrays["left_out"]), indices(self.arrays["reached"])
         self.tangent_restitution = doubles(tangent_restitution)
         self.p, self.failed = doubles(self.arrays["p"]), indices(self.arrays["failed"])
         self.numbers = np.zeros((n + 2 * n_j) * n_q + n + 2 * n_t)
@@ -218,6 +219,10 @@ class Rows:
         self.T_t, self.J_t = after(self.H_t, n_c), after(self.H_t, n_c + n_t)
         self.sliding, self.at_rest = after(self.H_t, n), after(self.H_t, n + n_t)
         self.elimination, self.blows = Elimination(n_j, n_c, n_q), Blows(n_q, n_c, n_t, n)
+        self.blown = np.zeros(n * (n_q + 1) + n_q * n_q if coefficients.two else 0)
+        self.answers = doubles(self.blown)
+        self.mobilities = after(self.answers, n * n_q)
+        self.masses = after(self.mobilities, n)
         self.looked_at = np.zeros(n_c if projected else 0, dtype=np.intp)
         self.repair = np.zeros(n_c + 2 * n + n_q * n_q + n * n_q + n * n if projected else 0)
         self.near = indices(self.looked_at)

@@ -1,51 +1,58 @@
 """Contacts that a blow reaches, as kernels: by masses, joints and other contacts.
 
 Springs and dampers carry no impulses, though the mobilities of an implicit step, in which they are, connect nearly
-everything. `sparse_stiction.connected` has the same rule.
+everything: it is asked of the rows that take part whether R_i M^-1 R_k^T is zero. `sparse_stiction.connected` has the
+same rule.
 """
 
 from __future__ import annotations
 
+from math import sqrt
+
 import cython
 
+from lcpstep.kernels.acceleration import factor_mass, response
 from lcpstep.kernels.model import Model
-from lcpstep.pointers import Doubles, after
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import Doubles, abs, after
 from lcpstep.stepping.theta_method.moving import Rows, State
 
+APART = 1e-12  # of the mobilities of two rows: what one does to the other, where rounding is all that it does
 
-def reach(m: Model, s: State, c: Rows, n_a: int, n_f: int) -> None:
-    """Mark in `problem.sum`, where contacts that strike have 1, all that their impulses reach."""
-    M, n, ids, more = m.M if m.linear else s.M, s.n_q, c.problem.ids, True
-    for j in range(n):
-        c.hit[j] = 0
+
+def reach(m: Model, s: State, c: Rows, n_a: int, n_f: int, t: float) -> bool:
+    """Mark in `problem.sum`, where contacts that strike have 1, all that their impulses reach; False: no masses.
+
+    t : time at the end of the step
+    """
+    n, n_k, ids, Y, own = s.n_q, n_a + n_f + c.n_j, c.problem.ids, c.answers, c.mobilities
+    if not factor_mass(m, t, s.q, s.v, c.masses):
+        return False
+    for k in range(n_k):
+        row = after(c.H, ids[k] * n)
+        response(m, c.masses, s.try_q, row, after(Y, k * n))
+        own[k], c.reached[k] = product(row, after(Y, k * n), 0, n), 0
+    more = True
     while more:
         more = False
-        for k in range(n_a + n_f + c.n_j):
-            row = after(c.H, ids[k] * n)
-            if k >= n_a + n_f:
-                more = (is_hit(c, row, n) and hit(c, row, n)) or more
-                continue
-            a = k if k < n_a else c.problem.carrier[k - n_a]
-            if c.problem.sum[a] == 1.0 or is_hit(c, row, n):
-                c.problem.sum[a] = 1.0
-                more = hit(c, row, n) or more
-        for j in range(n):
-            if c.hit[j] == 1:
-                more = hit(c, after(M, j * n), n) or more
+        for k in range(n_k):
+            a = contact_of(c, k, n_a, n_f)
+            if c.reached[k] == 0 and (is_met(c, own, k, n_k, n) or (a >= 0 and c.problem.sum[a] == 1.0)):
+                c.reached[k], more = 1, True
+                if a >= 0:
+                    c.problem.sum[a] = 1.0
+    return True
 
 
-def is_hit(c: Rows, row: Doubles, n: int) -> bool:
-    """Whether one of the coordinates that a row is of moves."""
-    some = False
-    for j in range(n):
-        some = some or (row[j] != 0.0 and c.hit[j] == 1)
-    return some
+def contact_of(c: Rows, k: int, n_a: int, n_f: int) -> int:
+    """Whose normal or tangent row k of those that take part is; -1 for a joint's."""
+    return k if k < n_a else c.problem.carrier[k - n_a] if k < n_a + n_f else -1
 
 
-def hit(c: Rows, row: Doubles, n: int) -> bool:
-    """All of them move; whether one did not before."""
-    some = False
-    for j in range(n):
-        if row[j] != 0.0 and c.hit[j] == 0:
-            c.hit[j], some = 1, True
+def is_met(c: Rows, own: Doubles, k: int, n_k: int, n: int) -> bool:
+    """Whether an impulse of a row that has been reached moves row k."""
+    row, some = after(c.H, c.problem.ids[k] * n), False
+    for i in range(n_k):
+        if not some and c.reached[i] == 1:
+            some = abs(product(row, after(c.answers, i * n), 0, n)) > APART * sqrt(own[k] * own[i])
     return some

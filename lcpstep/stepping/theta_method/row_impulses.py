@@ -38,11 +38,11 @@ def impulses(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, r
         if c.external and not c.solved:
             return NEED_LCP
         s.problems += 1
-        if not c.solved and not solve(m, s, c, n_a, c.n_f, impact):
+        if not c.solved and not solve(m, s, c, n_a, c.n_f, t_next, impact):
             forget_tiny(c.problem.rate, n_a + c.n_f)
-            if not solve(m, s, c, n_a, c.n_f, impact):
+            if not solve(m, s, c, n_a, c.n_f, t_next, impact):
                 impact = pose(m, plan, s, c, n_a, t_next, False)
-                if not search(m, s, c, n_a, impact):
+                if not search(m, s, c, n_a, t_next, impact):
                     return LCP_FAILED
         if c.n_j > 0 and loads_nothing(s, c, n_a):
             return LCP_FAILED
@@ -157,7 +157,7 @@ def rates(m: Model, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
     return impact
 
 
-def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool:
+def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, t_next: float, impact: bool) -> bool:
     """Impulses of the contacts from their rates; False where there are none."""
     if impact and c.in_turn:
         c.coefficients.use(c.problem.mu)
@@ -169,7 +169,8 @@ def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool
         if impact:
             for k in range(n_a):
                 c.problem.sum[k] = 1.0 if c.blows.u[c.problem.ids[k]] < -c.problem.slow[k] else 0.0
-            reach(m, s, c, n_a, n_f)
+            if not reach(m, s, c, n_a, n_f, t_next):
+                return False
         return solve_steps(c.problem, c.coefficients, s.sticks, c.sliding, n_a, n_f, impact)
     found = solve_contacts(c.problem, n_a, n_f)
     if found and n_f > 0 and not impact:
@@ -177,15 +178,15 @@ def solve(m: Model, s: State, c: Rows, n_a: int, n_f: int, impact: bool) -> bool
     return found
 
 
-def search(m: Model, s: State, c: Rows, n_a: int, impact: bool) -> bool:
+def search(m: Model, s: State, c: Rows, n_a: int, t_next: float, impact: bool) -> bool:
     """The same, for seconds if need be: the run would end here.
 
     Of rows that nearly say the same, as of the ends of links above a floor, few starts lead to the impulses.
     """
-    if solve(m, s, c, n_a, c.n_f, impact):
+    if solve(m, s, c, n_a, c.n_f, t_next, impact):
         return True
     c.problem.work.thorough = True
-    found = solve(m, s, c, n_a, c.n_f, impact)
+    found = solve(m, s, c, n_a, c.n_f, t_next, impact)
     c.problem.work.thorough = False
     return found
 
