@@ -125,9 +125,9 @@ def restitution(value: ArrayLike, n_c: int) -> Array:
 
 
 def count(name: str, value: Any) -> int:
-    """A positive integer that kernels can count to; 1e6 is one."""
+    """A positive integer that kernels can count to."""
     try:
-        result = int(value) if isinstance(value, float) and value.is_integer() else operator.index(value)
+        result = operator.index(value)
     except TypeError:
         result = 0
     if result < 1 or isinstance(value, bool):
@@ -135,6 +135,11 @@ def count(name: str, value: Any) -> int:
     if result > LARGEST:
         raise ValueError(f"{name}: expected an integer of at most {LARGEST}, got {value!r}")
     return result
+
+
+def limit(name: str, value: Any) -> int:
+    """The same, of what may be as large as 1e6, and is written so."""
+    return count(name, int(value) if isinstance(value, float) and value.is_integer() else value)
 
 
 def period(value: Any) -> float:

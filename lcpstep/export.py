@@ -176,7 +176,7 @@ def fmu(scene: Scene, path: str | Path, method: Method | None = None) -> Path:
     if isinstance(method, Located) and method.order == "exact":
         require_exact(scene)
     name = re.sub(r"\W", "_", path.stem, flags=re.ASCII)
-    if keyword.iskeyword(name) or not name.isidentifier() or name in UNIT:
+    if keyword.iskeyword(name) or not name.isidentifier() or re.search(rf"\b{name}\b", UNIT):
         name = f"unit_{name}"
     motion = base64.b64encode(pickle.dumps(Motion(scene, method))).decode()
     title = f"{scene.name} by {method!r}".replace("\\", "/").replace('"', "'").replace("\n", " ")

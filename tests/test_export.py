@@ -88,12 +88,13 @@ for h0, name in ((1.0, "ball"), (2.0, "ball"), (3.0, "numpy"), (4.0, "3 bälle")
 
 
 @pytest.mark.slow
-def test_units_in_one_python_are_each_their_own_whatever_their_names(tmp_path, monkeypatch):
+def test_units_in_one_python_are_each_their_own_whatever_their_names(tmp_path):
     pytest.importorskip("pythonfmu3")
     pytest.importorskip("fmpy")
-    monkeypatch.chdir(tmp_path)
     fallen = 0.5 * 9.81 * 0.1**2
-    assert [float(x) + fallen for x in python(SEVERAL).split()] == pytest.approx([1.0, 2.0, 3.0, 4.0])
+    assert [float(x) + fallen for x in python(SEVERAL, cwd=tmp_path).split()] == pytest.approx(
+        [1.0, 2.0, 3.0, 4.0]
+    )
 
 
 @pytest.mark.parametrize("name", ["ball", "3 bälle", "class", "pickle", "numpy"])

@@ -153,9 +153,12 @@ def _check_pictures(options: argparse.Namespace, scene: Any) -> None:
             raise ValueError(
                 f"--{name}: expected a name that ends in {', '.join(endings)}, got {str(file)!r}"
             )
+        folder = next(path for path in file.absolute().parents if path.exists())
+        if not folder.is_dir():
+            raise ValueError(f"--{name}: {folder} is no folder")
     if options.film is not None and scene.drawing is None:
         raise ValueError(
-            f"--film: {scene.name!r} has no drawing; give the scene a function f(t, q) that draws it"
+            f"--film: {scene.name!r} has no drawing; give the scene a function of time and state that draws it"
         )
     if options.film is not None and options.film.suffix == ".mp4" and shutil.which("ffmpeg") is None:
         raise ValueError(

@@ -67,7 +67,7 @@ class EventDriven:
     def __post_init__(self) -> None:
         object.__setattr__(self, "rtol", checks.number("rtol", self.rtol, least=LEAST_TOLERANCE, most=1.0))
         object.__setattr__(self, "atol", checks.positive("atol", self.atol))
-        object.__setattr__(self, "max_events", checks.count("max_events", self.max_events))
+        object.__setattr__(self, "max_events", checks.limit("max_events", self.max_events))
         checks.instance("audit", self.audit, bool)
         if not isinstance(self.jamming, str) or self.jamming not in ("stop", "impact"):
             raise ValueError(f'jamming: expected "stop" or "impact", got {self.jamming!r}')

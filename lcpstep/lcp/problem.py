@@ -136,8 +136,8 @@ def check_finite(W: Any, b: Any) -> None:
 def limits(tol: float, max_iterations: int | None) -> int | None:
     """How many iterations can be made, None if nobody says; ValueError unless an answer can be within `tol`."""
     try:
-        possible = tol >= 0.0
-    except TypeError:
+        possible = bool(tol >= 0.0)
+    except (TypeError, ValueError):
         possible = False
     if not possible:
         raise ValueError(f"tol must be a number >= 0, not {tol!r}")
@@ -147,7 +147,7 @@ def limits(tol: float, max_iterations: int | None) -> int | None:
         most = int(max_iterations)
     except (TypeError, ValueError, OverflowError):
         most = -1
-    if most < 0 or most != max_iterations or isinstance(max_iterations, bool):
+    if most < 0 or most != max_iterations or isinstance(max_iterations, (bool, np.bool_)):
         raise ValueError(f"max_iterations must be an integer >= 0, not {max_iterations!r}")
     return most
 

@@ -74,8 +74,8 @@ class Located:
         known = isinstance(self.order, Hashable) and self.order in ORDERS
         if not known or isinstance(self.order, (bool, float)):
             raise ValueError(f'order: expected 2, 4 or "exact", got {self.order!r}')
-        object.__setattr__(self, "max_events", checks.count("max_events", self.max_events))
-        object.__setattr__(self, "max_per_step", checks.count("max_per_step", self.max_per_step))
+        object.__setattr__(self, "max_events", checks.limit("max_events", self.max_events))
+        object.__setattr__(self, "max_per_step", checks.limit("max_per_step", self.max_per_step))
         checks.instance("audit", self.audit, bool)
         if self.tolerance is not None:
             object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))

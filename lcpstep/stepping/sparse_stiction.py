@@ -61,7 +61,7 @@ class Stiction:
         """The answer with the coefficients that fit it; those of `problem` do not count.
 
         sliding : (n_c,)   sliding velocities at the start of the step
-        strikes : (n_c,)   contacts that strike in it: these, and all that impulses connect with them, meet mu
+        strikes : (n_c,)   contacts that strike in it: these, and all that they reach (`connected`), meet mu
         """
         tried = np.where(self.sticks, STICKS, SLIDES)
         if self.kernel.two and np.any(strikes):
@@ -100,13 +100,17 @@ class Stiction:
 def connected(M: Any, c: Coupled, problem: Problem, strikes: Any) -> Any:
     """Contacts (n_c,) that impulses connect with those that strike, by masses, joints or active contacts.
 
-    Springs and dampers carry no impulses, though a step's matrix has them, too: the rule of `theta_method.reached`.
+    Springs and dampers carry no impulses, though a step's matrix has them, too. As `theta_method.reached`, but for
+    rows that share coordinates and yet do not move each other, as of the centre of percussion: here these connect.
     """
     from scipy.sparse import coo_array, csr_array
     from scipy.sparse.csgraph import connected_components
 
     entry, total = coo_array(M), c.n_q + c.n_r
-    bear = np.concatenate([np.ones(c.n_j, dtype=bool), problem.active, problem.rough])[c.row]
+    entry.eliminate_zeros()
+    bear = np.concatenate([np.ones(c.n_j, dtype=bool), problem.active, problem.rough])[c.row] & (
+        c.R.data != 0.0
+    )
     normal = c.n_q + c.n_j + np.flatnonzero(problem.rough)
     links = (
         np.concatenate([entry.row, c.n_q + c.row[bear], normal]),

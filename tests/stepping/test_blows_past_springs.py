@@ -32,9 +32,34 @@ def test_a_blow_does_not_loosen_what_springs_alone_tie_to_it(h):
     assert np.all(run.q[:, 0] == 0.0)
 
 
-def test_nor_by_sparse_steps():
-    run = simulate(scene(70, sparse.csr_array), Moreau(1e-2))
+def stored(M):
+    """A sparse matrix that has its zeros written down."""
+    rows, columns = np.indices(M.shape).reshape(2, -1)
+    return sparse.csr_array((M.ravel(), (rows, columns)), shape=M.shape)
+
+
+@pytest.mark.parametrize("made", [sparse.csr_array, stored])
+def test_nor_by_sparse_steps(made):
+    run = simulate(scene(70, made), Moreau(1e-2))
     assert np.all(run.q[:, 0::3] == 0.0)
+
+
+@pytest.mark.usefixtures("sparse_steps")
+def test_a_blow_goes_through_one_block_to_the_one_on_top():
+    """The striker z hangs on the mass of block x; block X, held by mu_s alone, rests on it, and is struck with it."""
+    M = np.eye(5)  # x, y, X, Y, z
+    M[0, 4] = M[4, 0] = -0.5
+    normals = np.array([[0.0, 1.0, 0.0, 0.0, 0.0], [0.0, -1.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0, -1.0]])
+    tangents = np.array([[1.0, 0.0, 0.0, 0.0, 0.0], [-1.0, 0.0, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0, 0.0]])
+    runs = []
+    for made in (np.asarray, sparse.csr_array):
+        friction = Coulomb([5.0, 0.4, 0.0], made(tangents), mu_s=[5.0, 0.8, 0.0])
+        contacts = LinearContacts(made(normals), [0.0, 0.0, 0.1], friction=friction)
+        system = LinearSystem(made(M), force=[0.0, -G, 0.6 * G, -G, 0.0])
+        start = np.zeros(5), [0.0, 0.0, 0.0, 0.0, 1.0]
+        runs.append(simulate(Scene(system, *start, (0.0, 0.2), contacts), Moreau(1e-3)))
+    np.testing.assert_allclose(runs[0].q, runs[1].q, rtol=0.0, atol=1e-12)
+    assert runs[0].q[-1, 2] - runs[0].q[-1, 0] > 1e-3
 
 
 @pytest.mark.parametrize(

@@ -1,8 +1,8 @@
 """Contacts that a blow reaches, as kernels: by masses, joints and other contacts.
 
 Springs and dampers carry no impulses, though the mobilities of an implicit step, in which they are, connect nearly
-everything: it is asked of the rows that take part whether R_i M^-1 R_k^T is zero. `sparse_stiction.connected` has the
-same rule.
+everything: it is asked of the rows that take part whether R_i M^-1 R_k^T is zero. Sparse steps ask for coordinates
+that rows share (`sparse_stiction.connected`).
 """
 
 from __future__ import annotations
