@@ -12,6 +12,7 @@ from lagrangian import Coulomb, LinearContacts, LinearSystem, Scene, scenes
 from lagrangian.scenes.rough_contacts import critical_friction
 from lcpstep import EventDriven, Kind, LcpStepError, Located, Status, continued, simulate
 from lcpstep import energy as energy_balance
+from lcpstep.stepping.rubbing.run import RubbingRun
 from tests.events.rough import G0, block, energy, shaken_slip, shaken_tangent, times
 from tests.marks import shared
 from tests.random_friction import draw
@@ -269,3 +270,19 @@ def test_endless_impacts_of_one_foot_between_those_of_the_other_have_an_end(n, o
     assert m.status == Status.DONE
     assert len(m.impacts) < 1.1 * len(reference.impacts)
     assert np.max(np.abs(m.q[-1] - reference.q[-1])) < 1e-4
+
+
+def test_parts_of_a_step_between_events_are_looked_at_as_steps_are(monkeypatch):
+    """Else nobody would see that a run goes on without end within one step."""
+    seen, end = [], RubbingRun.trajectory
+
+    def told(run, code):
+        seen.append((run.done, run.counts.steps))
+        return end(run, code)
+
+    monkeypatch.setattr(RubbingRun, "trajectory", told)
+    m = simulate(scenes.mass_on_shaken_belt(), Located(2e-2))
+    inside = {t for t in m.impacts.time if 1e-6 < t % 2e-2 < 2e-2 - 1e-6}
+    ((done, steps),) = seen
+    assert steps == m.counts.steps == 2000
+    assert done - steps >= len(inside) > 0
