@@ -139,7 +139,8 @@ def count(name: str, value: Any) -> int:
 
 def limit(name: str, value: Any) -> int:
     """The same, of what may be as large as 1e6, and is written so."""
-    return count(name, int(value) if isinstance(value, float) and value.is_integer() else value)
+    whole = isinstance(value, (float, np.floating)) and value.is_integer()
+    return count(name, int(value) if whole else value)
 
 
 def period(value: Any) -> float:

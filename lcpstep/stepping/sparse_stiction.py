@@ -34,7 +34,8 @@ class Stiction:
         self.kernel, self.given = coefficients(scene), None if friction is None else friction.slip
         self.varies, self.sticks = bool(self.kernel.varies), np.zeros(n_c, dtype=bool)
         system: Any = scene.system
-        self.M = system.M
+        self.M = system.M.tocoo(copy=True)
+        self.M.eliminate_zeros()
         self.mu, self.mu_s = np.zeros((2, n_c))
         if not self.varies:
             self.measure(scene.t_span[0], np.array(scene.q0), np.zeros(n_c))
@@ -103,18 +104,17 @@ def connected(M: Any, c: Coupled, problem: Problem, strikes: Any) -> Any:
     Springs and dampers carry no impulses, though a step's matrix has them, too. As `theta_method.reached`, but for
     rows that share coordinates and yet do not move each other, as of the centre of percussion: here these connect.
     """
-    from scipy.sparse import coo_array, csr_array
+    from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
 
-    entry, total = coo_array(M), c.n_q + c.n_r
-    entry.eliminate_zeros()
+    total = c.n_q + c.n_r
     bear = np.concatenate([np.ones(c.n_j, dtype=bool), problem.active, problem.rough])[c.row] & (
         c.R.data != 0.0
     )
     normal = c.n_q + c.n_j + np.flatnonzero(problem.rough)
     links = (
-        np.concatenate([entry.row, c.n_q + c.row[bear], normal]),
-        np.concatenate([entry.col, c.R.indices[bear], normal + c.n_c]),
+        np.concatenate([M.row, c.n_q + c.row[bear], normal]),
+        np.concatenate([M.col, c.R.indices[bear], normal + c.n_c]),
     )
     part = connected_components(csr_array((np.ones(len(links[0])), links), shape=(total, total)), False)[1]
     normals = part[c.n_q + c.n_j : total - c.n_c]

@@ -23,8 +23,8 @@ from lcpstep.turns import turns
 
 
 def start(
-    scene: Scene, kind: Callable[..., Any], rtol: float, atol: float, *more: Any, yields: bool = False,
-    modes: Functions | None = None,
+    scene: Scene, kind: Callable[..., Any], rtol: float, atol: float, *, yields: bool = False,
+    modes: Functions | None = None, **more: Any,
 ) -> Any:  # fmt: skip
     """The state at the start of the span, of that kind of motion, which may ask for more than tolerances.
 
@@ -42,7 +42,7 @@ def start(
     )
     s = kind(
         rows, coefficients(scene), tangential, friction is not None and friction.law == "stronge", yields,
-        scan, *gauss(QUADRATURE), *more,
+        scan, *gauss(QUADRATURE), **more,
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan

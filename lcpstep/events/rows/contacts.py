@@ -93,13 +93,8 @@ class Contacts(Rows):
         self.touches = indices_after(self.may_stick, n_c)
         self.parting = indices_after(self.touches, n_c)
         # Of their owner: the state, and friction, if there is any
-        self.q, self.v, self.mu, self.mu_s, self.rough = (
-            self.a,
-            self.dv,
-            self.before,
-            self.before,
-            self.may_stick,
-        )
+        self.q, self.v = self.a, self.dv
+        self.mu, self.mu_s, self.rough = self.before, self.before, self.may_stick
         for c in range(n_c):
             self.struck[c] = self.chatter_end[c] = -inf
 

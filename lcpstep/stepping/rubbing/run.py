@@ -37,8 +37,10 @@ class RubbingRun(ContactRun):
         """The motion at the start of the span."""
         parts = list(divided(scene.t_span, method.h))
         h, n = parts[0][0], parts[-1][3]
-        steps = int(method.order), h, float(scene.t_span[0]), n, method.tolerance or 0.0
-        system: RubbingSteps = start(scene, RubbingSteps, ROUNDING, ROUNDING, *steps)
+        system: RubbingSteps = start(
+            scene, RubbingSteps, ROUNDING, ROUNDING, order=int(method.order), h=h,
+            t_start=float(scene.t_span[0]), n_steps=n, tolerance=method.tolerance or 0.0,
+        )  # fmt: skip
         at = float(scene.t_span[0]), np.array(scene.q0), np.array(scene.v0)
         rows = system.rows
         rows.far, rows.fast, rows.longest = sizes(rows.model, *at, SOON * system.scan_length)

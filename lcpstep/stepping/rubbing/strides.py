@@ -21,11 +21,9 @@ import numpy as np
 from lcpstep.arrays import doubles
 from lcpstep.events.contacts.smooth import Smooth
 from lcpstep.events.contacts.state import GUARDS
-from lcpstep.events.rows.contacts import Contacts
 from lcpstep.events.rows.loads import list_by_row
 from lcpstep.events.rows.projection import push_onto_rows, put_on_rows, take_rows
 from lcpstep.kernels.clock import RESOLUTION
-from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.vectors import add, clear, copy, distance, finite, largest
 from lcpstep.pointers import Doubles, abs, after, min
 
@@ -57,27 +55,14 @@ class Strides(Smooth):
 
     Parameters
     ----------
-    rows to weights    as of `Rubbing`
+    given    as of `Rubbing`
     order, h, t_start, n_steps, tolerance   as above
     """
 
     def __init__(
-        self,
-        rows: Contacts,
-        coefficients: Coefficients,
-        tangential: Any,
-        in_turn: bool,
-        yields: bool,
-        scan_length: float,
-        nodes: Any,
-        weights: Any,
-        order: int,
-        h: float,
-        t_start: float,
-        n_steps: int,
-        tolerance: float,
+        self, *given: Any, order: int, h: float, t_start: float, n_steps: int, tolerance: float
     ) -> None:
-        super().__init__(rows, coefficients, tangential, in_turn, yields, scan_length, nodes, weights)
+        super().__init__(*given)
         self.order, self.h, self.t_start, self.n_steps, self.tolerance = order, h, t_start, n_steps, tolerance
         self.tau, self.decided = 0.0, self.t_start
         self.going = self.based = False

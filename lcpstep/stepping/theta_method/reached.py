@@ -13,10 +13,12 @@ import cython
 
 from lcpstep.kernels.acceleration import factor_mass, response
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.repose import contact_of
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles, abs, after
 from lcpstep.stepping.theta_method.moving import Rows, State
 
+JOINT = -1  # no contact
 APART = 1e-12  # of the mobilities of two rows: what one does to the other, where rounding is all that it does
 
 
@@ -36,17 +38,12 @@ def reach(m: Model, s: State, c: Rows, n_a: int, n_f: int, t: float) -> bool:
     while more:
         more = False
         for k in range(n_k):
-            a = contact_of(c, k, n_a, n_f)
+            a = contact_of(c.problem, k, n_a) if k < n_a + n_f else JOINT
             if c.reached[k] == 0 and (is_met(c, own, k, n_k, n) or (a >= 0 and c.problem.sum[a] == 1.0)):
                 c.reached[k], more = 1, True
                 if a >= 0:
                     c.problem.sum[a] = 1.0
     return True
-
-
-def contact_of(c: Rows, k: int, n_a: int, n_f: int) -> int:
-    """Whose normal or tangent row k of those that take part is; -1 for a joint's."""
-    return k if k < n_a else c.problem.carrier[k - n_a] if k < n_a + n_f else -1
 
 
 def is_met(c: Rows, own: Doubles, k: int, n_k: int, n: int) -> bool:
