@@ -29,6 +29,7 @@ STEPS, STEPS_LOCATED = 2.0, 0.01  # that an impact may be noticed too late, of t
 ROUNDING = 1e-9  # of the coordinates, and of how far they could have gone: no depth
 ROUNDING_BESIDE = 1e-12  # of how far others could have gone, in the metric of M: what couples them
 MANY = 100  # contacts: of more it is not asked whether they squeeze what lies between
+TOGETHER = 4096  # states whose energies are found at a time: they stay in the processor's caches
 LONGEST = 10.0  # of the mean step: one of those that a tolerance has chosen
 
 
@@ -144,7 +145,8 @@ def largest_energy(run: Trajectory) -> float:
     """The largest kinetic energy of the kept states."""
     M: Any = getattr(run.scene.system, "M", None)
     if M is not None:
-        return 0.5 * float(np.max(np.sum(run.v * (M @ run.v.T).T, axis=1)))
+        parts = (run.v[k : k + TOGETHER] for k in range(0, len(run.v), TOGETHER))
+        return 0.5 * max(float(np.max(np.sum(v * (M @ v.T).T, axis=1))) for v in parts)
     from lcpstep.kernels.states import power
     from lcpstep.model import looked_at
 

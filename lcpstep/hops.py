@@ -53,6 +53,8 @@ def _hops(run: Trajectory, h: float, log: Any) -> str:
     step = h * -struck.before
     told = (step > SHARE * way) & (step > AMONG * among)
     struck, step = struck[told], step[told]
+    if len(struck) < LEAST:
+        return ""
     own = 0.5 * struck.impulse * struck.before**2 / (struck.after - struck.before)
     least, most = np.array(ENERGY) * largest_energy(run)
     told = (own > least) & (own < most)
@@ -69,7 +71,7 @@ def _hops(run: Trajectory, h: float, log: Any) -> str:
 def _ways(run: Trajectory, c: int) -> tuple[float, float]:
     """How far the coordinates went towards a contact, or away from it; and how far had all gone as far as any."""
     scene = run.scene
-    far = np.ptp(np.vstack([scene.q0, run.q]), axis=0)
+    far = np.maximum(scene.q0, run.q.max(axis=0)) - np.minimum(scene.q0, run.q.min(axis=0))
     try:
         G = np.abs(normal(scene, c, (scene.t_span[0], np.asarray(scene.q0), np.asarray(scene.v0))))
     except ValueError:  # a callback that fails beside the motion
