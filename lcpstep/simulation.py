@@ -17,6 +17,7 @@ from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.faults import fault, forget, forget_all
 from lcpstep.hearing import hearing
 from lcpstep.hops import too_short
+from lcpstep.jolts import jolted
 from lcpstep.leaps import leapt
 from lcpstep.outrun import outrun
 from lcpstep.prepared import prepared
@@ -199,6 +200,7 @@ def _looked_over(run: Trajectory) -> Trajectory:
         doubt = (
             _of_obstacles(run)
             or leapt(run)
+            or jolted(run)
             or too_deep(run)
             or unresolved(run)
             or turned(run)

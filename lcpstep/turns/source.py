@@ -23,6 +23,7 @@ LOOKS = 64  # per window, of a function that cannot be evaluated on intervals
 FEWEST = 3  # the same where there are many windows
 MOST_LOOKS = 32_768  # at all windows of a size, unless these are FEWEST
 GOLDEN = 0.6180339887498949
+FRAME = "system.frame"
 OURS = "lagrangian."  # modules whose functions turn no faster than their period, and name their corners
 
 
@@ -167,7 +168,7 @@ def sources(scene: Scene) -> list[Source]:
     system: Any = scene.system
     contacts: Any = scene.contacts
     if isinstance(system, LinearSystem) and system.frame is not None and scene.n_c > 0:
-        found.append(("system.frame", system.frame, None, scene.n_q))
+        found.append((FRAME, system.frame, None, scene.n_q))
     if isinstance(contacts, LinearContacts) and contacts.motion is not None:
         found.append(("contacts.motion", contacts.motion, None, scene.n_c))
     if isinstance(contacts, Contacts) and contacts.gap_t is not None:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.intervals import NotEnclosed
 from lcpstep.turns.refine import APART, JUMP, LITTLE, MUCH, Leaves, jump_times, leaves
-from lcpstep.turns.source import Source, belts, sources
+from lcpstep.turns.source import FRAME, Source, belts, sources
 from lcpstep.warned import warn
 
 Array = NDArray[np.float64]
@@ -30,7 +30,8 @@ KEPT = 256  # scenes whose stops are remembered
 
 
 NOWHERE: Array = np.zeros((0, 2))
-NOWHERE.flags.writeable = False
+NEVER: Array = np.zeros(0)
+NOWHERE.flags.writeable = NEVER.flags.writeable = False
 
 
 class FastTurn(UserWarning):
@@ -43,11 +44,13 @@ class Turns(NamedTuple):
     stops : (m,)     times to look at, in [0, period), or in the span where nothing repeats; with the scene's corners
     fast : (k, 2)    stretches between them, with as much on both sides, apart from each other
     sampled          what is known from samples alone, and turns fast, and why; ""
+    jolts : (j,)     where the velocity of the frame jumps
     """
 
     stops: Array
     fast: Array
     sampled: str
+    jolts: Array
 
     def elsewhere(self, times: Array, period: float) -> NDArray[np.bool_]:
         """Which times lie in none of the stretches."""
@@ -66,7 +69,7 @@ def turns(scene: Scene, with_belts: bool = False) -> Turns:
     corners = np.asarray(scene.corners, dtype=float)
     found = sources(scene) + (belts(scene) if with_belts else []) if scene.n_c else []
     if not found:
-        return Turns(corners, NOWHERE, "")
+        return Turns(corners, NOWHERE, "", NEVER)
     span = (0.0, scene.period) if math.isfinite(scene.period) else scene.t_span
     result = _remembered(tuple(Key(x) for x in found), span, scene.period, tuple(corners.tolist()))
     if result.sampled:
@@ -100,7 +103,7 @@ def _remembered(
         named[inside] = at_jumps(key.source, named[inside], span)
     own = named[inside]
     ends = np.unique(np.concatenate([[span[0]], own, [span[1]]]))
-    stops, exact, stretches, words = [named], [own], [np.zeros((0, 2))], []
+    stops, exact, stretches, words, jolts = [named], [own], [np.zeros((0, 2))], [], [NEVER]
     for key in keys:
         source, found = _divided(key.source, ends, base)
         if found is None:  # all of it turns fast, as samples show as well
@@ -108,6 +111,8 @@ def _remembered(
         short = fast(found, SHORT * usual(found, base), ends, source.steady)
         stops += [corners_between(source, found), jump_at(source, found, ends)]
         jumps, times = jump_times(source, found.a[found.jumps], found.b[found.jumps])
+        if source.name == FRAME:
+            jolts += [times, stops[-1], own[jumps_beside(source, own, span)[0]]]
         turned = short.copy()
         turned[found.jumps] = ~jumps
         stops.append(np.concatenate([found.a[turned], found.b[turned]]))
@@ -125,6 +130,7 @@ def _remembered(
         _apart(np.unique(np.concatenate(stops)), span[1] - span[0], np.unique(np.concatenate(exact))),
         _widened(np.concatenate(stretches)),
         "; ".join(words),
+        np.sort(np.concatenate(jolts)),
     )
 
 
@@ -150,11 +156,16 @@ def at_jumps(source: Source, corners: Array, span: tuple[float, float]) -> Array
 
     Beyond a corner that is early, be it by ten roundings, what rests on an obstacle would go along through its jump.
     """
-    beside = 2.0 * APART * np.maximum(span[1] - span[0], np.abs(corners))
-    jumps, times = jump_times(source, corners - beside, corners + beside)
+    jumps, times = jumps_beside(source, corners, span)
     moved = corners.copy()
     moved[jumps] = times
     return np.where(np.abs(moved - corners) > ROUNDING * np.abs(corners), moved, corners)
+
+
+def jumps_beside(source: Source, times: Array, span: tuple[float, float]) -> tuple[NDArray[np.bool_], Array]:
+    """At which times a speed jumps, but for some roundings, and when it does: see `jump_times`."""
+    beside = 2.0 * APART * np.maximum(span[1] - span[0], np.abs(times))
+    return jump_times(source, times - beside, times + beside)
 
 
 def _divided(source: Source, ends: Array, base: float) -> tuple[Source, Leaves | None]:
