@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian import HybridScene, Scene, checks
-from lcpstep.errors import LcpStepError
+from lcpstep.errors import LcpStepError, SimulationError
 from lcpstep.maps.batch import IMPACTS_KEPT, INSIDE, Periods, periodic, periods, section
-from lcpstep.simulation import Method
+from lcpstep.maps.one_by_one import continued
+from lcpstep.simulation import Method, simulate
 from lcpstep.stepping.moreau import Moreau
 from lcpstep.trajectory import Status
 
@@ -82,8 +83,18 @@ class StroboscopicMap:
         if run.status[0] == INSIDE:
             raise ValueError(f"x: {x.tolist()} lies inside of the obstacle at t = {self.time:g} s")
         if run.status[0] != Status.DONE:
-            status = Status(run.status[0]).name
-            raise LcpStepError(
-                f"the motion from x = {x.tolist()} at t = {self.time:g} s ended early: {status}"
+            status = Status(run.status[0])
+            why = (
+                self._why(self.scene, run.final[0], status) if isinstance(self.scene, Scene) else status.name
             )
+            raise LcpStepError(f"the motion from x = {x.tolist()} at t = {self.time:g} s ended early: {why}")
         return run
+
+    def _why(self, scene: Scene, last: Array, status: Status) -> str:
+        """What a run says of the period from the last state on that has ended like this; else how it has."""
+        span = self.time, self.time + scene.period
+        try:
+            run = simulate(continued(scene, last, span), self.method, keep=[span[1]])
+        except SimulationError as error:
+            run = error.trajectory
+        return f"{status.name}, {run.message}" if run.status == status else status.name

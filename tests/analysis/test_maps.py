@@ -197,3 +197,22 @@ def test_many_periods_of_a_pendulum_between_two_stops_are_those_one_after_anothe
     found = periods(scene, EventDriven(), starts[:1], 20, drop=20, phase=phase, targets=there)
     first = 1 + np.flatnonzero(np.max(np.abs(many.states[0] - there.points[0]), axis=1) <= 1e-6)[0] + 3
     assert (found.reached[0], found.taken[0]) == (0, first)
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Moreau(1e-3)], ids=str)
+def test_an_image_that_is_not_reached_says_what_a_callback_has_raised(method):
+    def spring(t, q, v, p, out):
+        if q[0] > 0.3:
+            raise RuntimeError("broken")
+        out[0] = 20.0 * math.sin(6.0 * t) - 9.81
+
+    scene = Scene(
+        System(1, 1.0, spring),
+        0.1,
+        0.0,
+        (0.0, 1.0),
+        LinearContacts(1.0, restitution=0.5),
+        period=math.pi / 3.0,
+    )
+    with pytest.raises(LcpStepError, match=r"NOT_FINITE, system.force: .* failed at .*RuntimeError: broken"):
+        iterate(StroboscopicMap(scene, method), [0.1, 0.0], 20)
