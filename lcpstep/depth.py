@@ -42,8 +42,7 @@ def too_deep(run: Trajectory) -> str:
     share, steps = (SHARE, STEPS) if drifts else (SHARE_LOCATED, STEPS_LOCATED)
     if _shallow(run, share):
         return ""
-    last = len(run.t) - 1
-    k = sorted({int(i * (last / (LOOKS - 1))) for i in range(LOOKS - 1)} | {last})
+    k = spread(0, len(run.t) - 1, LOOKS)
     states = [(scene.t_span[0], np.asarray(scene.q0), np.asarray(scene.v0))]
     states += [(float(run.t[i]), run.q[i], run.v[i]) for i in k]
     try:
@@ -154,6 +153,13 @@ def largest_energy(run: Trajectory) -> float:
     cause()  # a callback that fails beside the motion, where the run has not asked it
     forget()
     return float(np.max(kinetic))
+
+
+def spread(first: int, last: int, most: int) -> NDArray[np.intp]:
+    """Whole numbers from the first to the last one, evenly spread, at most so many."""
+    if last - first < most:
+        return np.arange(first, last + 1)
+    return np.unique(np.linspace(first, last, most).astype(np.intp))
 
 
 def fixed_step(method: Any) -> float:

@@ -28,7 +28,7 @@ MET = (Kind.IMPACT, Kind.ACCUMULATION, Kind.STICK)
 
 def no_normal(run: Trajectory) -> str:
     """Which contact has struck where its gap has no gradient, in words; "" where none that was looked at."""
-    if run.status != Status.DONE or len(run.t) < 2:
+    if run.status != Status.DONE or len(run.t) < 2 or len(run.impacts) == 0:
         return ""
     log = run.impacts[np.isin(run.impacts.kind, MET)]
     log = log[(log.time >= run.t[0]) & (log.time <= run.t[-1])]

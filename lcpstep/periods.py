@@ -24,7 +24,7 @@ import numpy as np
 
 from lagrangian import LinearSystem
 from lcpstep.balance import in_words
-from lcpstep.depth import fixed_step
+from lcpstep.depth import fixed_step, spread
 from lcpstep.trajectory import Status, Trajectory
 
 LOOKS = 64  # steps that are looked at
@@ -55,7 +55,7 @@ def overleapt(run: Trajectory) -> str | None:
 
 def _steps(run: Trajectory, h: float) -> tuple[Any, int]:
     """Kept states from which a step of h without an impact leads to the next, of so many that are looked at."""
-    k = np.unique(np.linspace(0, len(run.t) - 2, LOOKS).astype(int))
+    k = spread(0, len(run.t) - 2, LOOKS)
     return k[(np.abs(run.t[k + 1] - run.t[k] - h) < LENGTH * h) & ~run.impulse[k + 1].any(axis=1)], len(k)
 
 

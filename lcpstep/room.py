@@ -43,7 +43,7 @@ def no_room(run: Trajectory) -> str:
     forget()
     if not deep:
         return ""
-    k = np.unique(np.linspace(0, len(run.t) - 1, LOOKS).astype(int))
+    k = depth.spread(0, len(run.t) - 1, LOOKS)
     with np.errstate(all="ignore"):
         g = gaps_at(m, run.t[k], np.ascontiguousarray(run.q[k]))
     cause()

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import LinearContacts, Scene
+from lcpstep.depth import spread
 from lcpstep.faults import cause, forget
 from lcpstep.model import looked_at
 from lcpstep.trajectory import Trajectory
@@ -38,7 +39,7 @@ def slide_on_one(run: Trajectory) -> str:
         return ""
     if getattr(contacts, "sparse", False):
         return ""
-    looked = np.unique(np.linspace(1, len(run.t) - 1, LOOKS).astype(int))
+    looked = spread(1, len(run.t) - 1, LOOKS)
     places = looked[:1] if isinstance(contacts, LinearContacts) else looked[:: max(1, len(looked) // PLACES)]
     m = looked_at(run.scene)
     near = {int(k): _near(m, float(run.t[k]), run.q[k].copy()) for k in places}

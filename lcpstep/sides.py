@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Contacts
+from lcpstep.depth import spread
 from lcpstep.faults import cause, forget
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.states import gaps_at, gradients_at
@@ -42,7 +43,7 @@ def passed_through(run: Trajectory) -> str:
 
 def _told(run: Trajectory, m: Model, looks: int) -> str:
     """The same, of a model, by so many looks."""
-    k = np.unique(np.linspace(0, len(run.t) - 1, looks).astype(int))
+    k = spread(0, len(run.t) - 1, looks)
     G = _gradients(m, run.t[k], run.q[k])
     for i, c in np.argwhere(np.sum(G[1:] * G[:-1], axis=2) < 0.0)[:MOST]:
         time = _zero(m, run, _between(m, run, int(k[i]), int(k[i + 1]), int(c), G[i, c]), int(c))
