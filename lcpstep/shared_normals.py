@@ -79,13 +79,15 @@ def _near(m: Model, t: float, q: Array) -> list[tuple[int, int, Array]]:
     from lcpstep.kernels.states import gaps_at, gradients_at
 
     at, here = np.array([t]), q[None]
-    N, g = np.asarray(gradients_at(m, at, here)[0]), np.asarray(gaps_at(m, at, here)[0])
-    sizes = np.sum(N * N, axis=1)
-    both = np.outer(sizes, sizes)
+    N = np.asarray(gradients_at(m, at, here)[0])
+    sizes = np.einsum("ij,ij->i", N, N)
+    both = sizes[:, None] * sizes
     alike = (both - np.maximum(N @ N.T, 0.0) ** 2 <= SAME * both) & (both > 0.0)
-    g = g / np.sqrt(np.maximum(sizes, np.finfo(float).tiny))
+    pairs = [(c, d) for c, d in np.argwhere(alike).tolist() if c < d]
+    if not pairs:
+        return []
+    g = np.asarray(gaps_at(m, at, here)[0]) / np.sqrt(np.maximum(sizes, np.finfo(float).tiny))
     scale = 1e-8 * max(1.0, float(np.max(np.abs(q))))
-    pairs = np.argwhere(np.triu(alike, 1)).tolist()
     return [(c, d, N[c]) for c, d in pairs if abs(g[c] - g[d]) <= scale]
 
 
