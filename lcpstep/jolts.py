@@ -20,7 +20,7 @@ KNOWN: WeakKeyDictionary[Scene, list[float]] = WeakKeyDictionary()  # a scene's 
 def jolted(run: Trajectory) -> str:
     """When the velocity of the frame has jumped in a run whose steps do not see that, in words; "" if it has not."""
     from lcpstep.model import at_hand
-    from lcpstep.turns import turns
+    from lcpstep.turns import jolts
 
     scene, m = run.scene, at_hand(run.scene)
     if not isinstance(scene.system, LinearSystem) or scene.system.frame is None or len(run.t) == 0:
@@ -29,7 +29,7 @@ def jolted(run: Trajectory) -> str:
         return ""
     begin, end, period = scene.t_span[0], float(run.t[-1]), scene.period
     if scene not in KNOWN:
-        KNOWN[scene] = turns(scene).jolts.tolist()
+        KNOWN[scene] = jolts(scene).tolist()
     later = (x if isinf(period) else x + (1 + floor((begin - x) / period)) * period for x in KNOWN[scene])
     t = min((x for x in later if begin < x < end), default=None)
     if t is None:

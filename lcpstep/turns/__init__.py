@@ -1,5 +1,5 @@
 """Where an obstacle or a frame that moves by itself turns fast, so that runs look finely there and only there."""
 
-from lcpstep.turns.stops import FastTurn, Turns, turns
+from lcpstep.turns.stops import FastTurn, Turns, jolts, turns
 
-__all__ = ["FastTurn", "Turns", "turns"]
+__all__ = ["FastTurn", "Turns", "jolts", "turns"]

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.intervals import NotEnclosed
 from lcpstep.turns.refine import APART, JUMP, LITTLE, MUCH, Leaves, jump_times, leaves
-from lcpstep.turns.source import FRAME, Source, belts, sources
+from lcpstep.turns.source import FRAME, Source, belts, ready_frame, sources
 from lcpstep.warned import warn
 
 Array = NDArray[np.float64]
@@ -70,11 +70,24 @@ def turns(scene: Scene, with_belts: bool = False) -> Turns:
     found = sources(scene) + (belts(scene) if with_belts else []) if scene.n_c else []
     if not found:
         return Turns(corners, NOWHERE, "", NEVER)
-    span = (0.0, scene.period) if math.isfinite(scene.period) else scene.t_span
-    result = _remembered(tuple(Key(x) for x in found), span, scene.period, tuple(corners.tolist()))
+    result = _remembered(tuple(Key(x) for x in found), _whole(scene), scene.period, tuple(corners.tolist()))
     if result.sampled:
         warn(f"{scene.name!r}: {result.sampled}", FastTurn)
     return result
+
+
+def jolts(scene: Scene) -> Array:
+    """Times in [0, period), or in the span, at which the velocity of the frame jumps."""
+    ready, corners = ready_frame(scene), np.asarray(scene.corners, dtype=float)
+    if ready is None:
+        return turns(scene).jolts
+    jumps, _ = jumps_beside(ready, corners, _whole(scene))
+    return np.asarray(corners[jumps])
+
+
+def _whole(scene: Scene) -> tuple[float, float]:
+    """A period, or the span where nothing repeats."""
+    return (0.0, scene.period) if math.isfinite(scene.period) else scene.t_span
 
 
 class Key:
