@@ -9,6 +9,8 @@ CLONED void lcpstep_subtract(double *, double *, double, ptrdiff_t);
 CLONED void lcpstep_add_four(double *, double *, ptrdiff_t, double *, ptrdiff_t, ptrdiff_t);
 CLONED void lcpstep_ratios(double *, double *, double, double *, double, ptrdiff_t);
 CLONED void lcpstep_excesses(double *, double *, double, double *, double, ptrdiff_t);
+CLONED void lcpstep_turn_four(double *, double *, double *, double *, ptrdiff_t, ptrdiff_t);
+CLONED void lcpstep_multiply(double *, double, ptrdiff_t);
 CLONED void lcpstep_raise_to(double *, double *, double, ptrdiff_t);
 CLONED long long lcpstep_largest_magnitude(double *, ptrdiff_t);
 CLONED double lcpstep_largest_entry(double *, ptrdiff_t);

@@ -16,7 +16,10 @@ cdef void excesses "lcpstep_excesses"(
 cdef void raise_to "lcpstep_raise_to"(double* target, double* x, double factor, Py_ssize_t m) noexcept nogil
 cdef long long largest_magnitude "lcpstep_largest_magnitude"(double* x, Py_ssize_t m) noexcept nogil
 cdef long long larger(long long a, long long b) noexcept nogil
-cdef void multiply(double* target, double factor, Py_ssize_t m) noexcept nogil
+cdef void turn_four "lcpstep_turn_four"(
+    double* target, double* x, double* by, double* c, Py_ssize_t stride, Py_ssize_t m
+) noexcept nogil
+cdef void multiply "lcpstep_multiply"(double* target, double factor, Py_ssize_t m) noexcept nogil
 cdef void copy(double* target, double* source, Py_ssize_t m) noexcept nogil
 cdef double largest_entry "lcpstep_largest_entry"(double* x, Py_ssize_t m) noexcept nogil
 cdef double lowest_entry "lcpstep_lowest_entry"(double* x, Py_ssize_t m) noexcept nogil

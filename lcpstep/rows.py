@@ -90,6 +90,17 @@ def larger(a: int, b: int) -> int:
     return a if a > b else b
 
 
+def turn_four(target: Doubles, x: Doubles, by: Doubles, c: Doubles, stride: int, m: int) -> None:
+    """Four rows x_k, that begin at x[k * stride], as columns of m rows of the target: by_k x_ki c_i."""
+    t, u, v, w = x, after(x, stride), after(x, 2 * stride), after(x, 3 * stride)
+    r, s, p, q = by[0], by[1], by[2], by[3]
+    for i in range(m):
+        target[i * stride] = t[i] * r * c[i]
+        target[i * stride + 1] = u[i] * s * c[i]
+        target[i * stride + 2] = v[i] * p * c[i]
+        target[i * stride + 3] = w[i] * q * c[i]
+
+
 def multiply(target: Doubles, factor: float, m: int) -> None:
     """Target *= factor in the first m entries."""
     for i in range(m):

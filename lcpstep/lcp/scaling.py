@@ -11,12 +11,11 @@ import cython
 
 from lcpstep.lcp.workspace import Workspace
 from lcpstep.pointers import Doubles, abs, after, bits, double_of, max
-from lcpstep.rows import largest_magnitude, raise_to
+from lcpstep.rows import largest_magnitude, raise_to, turn_four
 
 # A double x > 0 as an integer: the higher, the larger x; from bit 52 on 1022 plus the k with 2^-k x in [1/2, 1)
 INFINITE = 0x7FF0000000000000  # and beyond it what is not a number
 MANTISSA = 52
-TILE = 64  # rows that columns are filled from at a time: a line of W from memory serves all its entries
 LARGEST_POWER, SMALLEST_POWER = 1023 + 1000, 1023 - 1000
 
 
@@ -31,12 +30,13 @@ def equilibrate(W: Doubles, b: Doubles, n: int, work: Workspace) -> None:
     unit = inverse_power(largest)
     for i in range(n):
         scaled[i] *= unit
-    last = 0
-    while last < n:
-        first, last = last, last + TILE if last + TILE < n else n
+    first = 0
+    while first + 4 <= n:
+        turn_four(after(columns, first), after(W, first * n), after(r, first), c, n, n)
+        first += 4
+    for i in range(first, n):
         for j in range(n):
-            for i in range(first, last):
-                columns[j * n + i] = W[i * n + j] * r[i] * c[j]
+            columns[j * n + i] = W[i * n + j] * r[i] * c[j]
     for i in range(n):
         r[i], c[i] = r[i] * unit, c[i] / unit
 

@@ -20,7 +20,7 @@ import cython
 from lcpstep.lcp.judge import judge
 from lcpstep.lcp.status import MAX_ITERATIONS, RAY, SOLVED
 from lcpstep.lcp.workspace import Workspace
-from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
+from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max, min
 from lcpstep.rows import add_four, copy, excesses, largest_entry, lowest_entry, multiply, ratios, subtract
 
 SMALLEST_PIVOT = 1e-11  # relative to the largest entry of its column
@@ -149,13 +149,18 @@ def list_ties(s: int, n: int, work: Workspace) -> int:
     ratios(trial, q, slack, d, smallest, n)
     bound, tied = lowest_entry(trial, n), 0
     excesses(trial, q, bound, d, smallest, n)
-    for i in range(n):
+    i = 0
+    while i < n:
+        if i + 4 <= n and min(min(trial[i], trial[i + 1]), min(trial[i + 2], trial[i + 3])) > 0.0:
+            i += 4  # four that bound nothing, as most
+            continue
         if trial[i] <= 0.0:
             if work.basic[i] == n:
                 rows[0] = i
                 return 1
             rows[tied] = i
             tied += 1
+        i += 1
     return tied
 
 
