@@ -11,7 +11,7 @@ Noise, tables and corners do not come out like that; where nothing is certain no
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
@@ -205,7 +205,7 @@ class Known:
         self.more: WeakKeyDictionary[Any, Known] = WeakKeyDictionary()
 
     @contextmanager
-    def look(self, functions: Iterable[Any], what: Any, parameters: Any) -> Iterator[bool]:
+    def look(self, functions: Iterable[Any], what: Any, parameters: Any) -> Generator[bool]:
         """Whether to look at `what` of these functions with these parameters; noted if nothing was wrong.
 
         Not for more than a few sets of parameters, for a study has thousands of them.
