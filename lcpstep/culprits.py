@@ -12,6 +12,7 @@ from lagrangian.joints import state as joint_state
 from lcpstep.faults import fault
 
 Array = NDArray[np.float64]
+BEYOND = 1e-3, 2e-3  # [s] later than a time, differences look at what has no bias (lcpstep.kernels.biases)
 
 
 def culprit(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
@@ -26,6 +27,7 @@ def failing(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
     It is asked for at the state that the motion has reached, and at those that this leads to in a straight line.
     """
     raised, times = fault(), list(times)
+    times += [times[-1] + later for later in BEYOND if times]
     states = [(t, q, v) for t in times] + [(t, q + (t - times[0]) * v, v) for t in times]
     # Coefficients of friction have sliding velocities in their place
     if raised is not None and len(raised.v) == scene.n_q:

@@ -21,6 +21,7 @@ from lcpstep.depth import mass
 from lcpstep.errors import SimulationError, SimulationInterrupted
 from lcpstep.faults import cause
 from lcpstep.hindrance import hindrance
+from lcpstep.kernels.looks import all_finite
 from lcpstep.kernels.status import BUFFER_FULL
 from lcpstep.kinks import valley
 from lcpstep.model import unrepeatable
@@ -108,6 +109,7 @@ class Run(Portions):
     method, scene, kept : the question
     recorder : its buffers;  most : steps between two looks at the outside world
 
+    finite   time and state kept last before one that is not finite, where a step that failed has left such behind
     asked    whether its functions have been asked for the same twice
     stuck    why the run does not go on though its steps do, in words
     """
@@ -115,6 +117,7 @@ class Run(Portions):
     def __init__(self, method: Any, scene: Any, kept: Kept, recorder: Recorder, most: int) -> None:
         super().__init__(method, scene, kept, Pace(most, scene.n_q + recorder.record.n_c))
         self.recorder, self.asked, self.stuck = recorder, False, ""
+        self.finite: tuple[float, Array, Array] | None = None
         self.standstill = Standstill(scene.t_span, getattr(method, "h", inf))
 
     @property
@@ -176,6 +179,21 @@ class Run(Portions):
         self.empty()
         return self.recorder.states()
 
+    def known(self, s: States) -> States:
+        """The states kept before the first that is not finite."""
+        if all(map(all_finite, (s.q, s.v, *self.state))):
+            return s
+        fine = np.asarray(np.isfinite(np.hstack([s.q, s.v])).all(axis=1))
+        s = States(*(x[: len(fine) if fine.all() else int(np.argmin(fine))] for x in s))
+        if len(s.t):
+            self.finite = float(s.t[-1]), s.q[-1], s.v[-1]
+        return s
+
+    @property
+    def last(self) -> tuple[float, Array, Array]:
+        """The last finite time and state that are known."""
+        return self.finite or (self.now, *self.state)
+
     def status(self, code: int) -> Status:
         """How the run ended, by what the kernel returned."""
         return Status(code)
@@ -191,7 +209,7 @@ class Run(Portions):
                 else f"{self.tolerances} cannot be met by any step"
             )
             return f"{words} {self.where}"
-        q, v = self.state
+        _, q, v = self.last
         return f"{culprit(self.scene, self.ahead, q.copy(), v.copy())} {self.where}"
 
     def shares(self, s: States) -> tuple[Array, Array, Array]:
@@ -202,7 +220,7 @@ class Run(Portions):
 
     def trajectory(self, code: int) -> Any:
         """Everything computed so far."""
-        s = self.states()
+        s = self.known(self.states())
         impulse, friction, joint = self.shares(s)
         return Trajectory(
             scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v, impulse=impulse,
@@ -233,5 +251,5 @@ class Run(Portions):
     @property
     def where(self) -> str:
         """Time and state reached, in words."""
-        q, v = self.state
-        return f"at t = {self.now:.9g} s, q = {checks.shown(q)}, v = {checks.shown(v)}"
+        t, q, v = self.last
+        return f"at t = {t:.9g} s, q = {checks.shown(q)}, v = {checks.shown(v)}"

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from lagrangian import Contacts, LinearContacts, LinearJoints, LinearSystem, Scene, System
+from lagrangian import Contacts, Coulomb, Joints, LinearContacts, LinearJoints, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, SimulationError, callbacks, simulate
 from lcpstep.trajectory import Status
 from tests.falling import FALLING, FLOOR, run
@@ -259,3 +259,66 @@ def test_what_was_computed_before_a_failure_is_told_whatever_is_kept(method, kee
     else:
         assert m.t[-1] == pytest.approx(t, abs=1e-8)
         assert (m.q[-1, 0], m.v[-1, 0]) == (q, v)
+
+
+def level(t, q, v, p, out):
+    out[0] = q[1]
+
+
+def spoilt_level(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 0.0, 1.0 if t <= 0.5 else math.nan
+
+
+def along(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 1.0, 0.0
+
+
+def spoilt_along(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 1.0 if t <= 0.5 else math.nan, 0.0
+
+
+def upright(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 0.0, 1.0
+
+
+def spoilt_lift(t, q, v, p, out):
+    out[0] = q[1] - t * t if t <= 0.5 else math.nan
+
+
+def lift_t(t, q, v, p, out):
+    out[0] = -2.0 * t
+
+
+ROUGH = Coulomb(mu=0.1, tangent=along)
+AT_REST = {
+    "contacts.jacobian of what slides": {"contacts": Contacts(1, level, spoilt_level, friction=ROUGH)},
+    "contacts.jacobian of what rests": {"contacts": Contacts(1, level, spoilt_level)},
+    "friction.tangent": {
+        "contacts": Contacts(1, level, upright, friction=Coulomb(mu=0.1, tangent=spoilt_along))
+    },
+    "joints.gap": {"joints": Joints(1, spoilt_lift, upright, lift_t)},
+}
+
+
+@pytest.mark.parametrize(
+    "method",
+    [
+        *(EventDriven(), Located(1e-2), Located(1e-2, order=4)),
+        *(Located(1e-2, tolerance=1e-5), Located(1e-2, order=4, tolerance=1e-5)),
+    ],
+    ids=["event-driven", "located", "order four", "by a tolerance", "order four by a tolerance"],
+)
+@pytest.mark.parametrize("name", AT_REST)
+def test_what_goes_wrong_while_a_contact_is_closed_is_no_lack_of_forces(name, method):
+    system = LinearSystem(M=np.eye(2), force=[0.0, -10.0])
+    scene = Scene(system, q0=[0.0, 0.0], v0=[1.0, 0.0], t_span=(0.0, 0.8), **AT_REST[name])
+    with pytest.raises(SimulationError, match=rf"^{name.split()[0]}: .*not finite") as caught:
+        simulate(scene, method)
+    m = caught.value.trajectory
+    assert m.status is Status.NOT_FINITE
+    assert 0.4 <= m.t[-1] <= 0.52
+    assert "nan" not in str(caught.value).rpartition(" s, q = ")[2]
+    rough = scene.contacts is not None and scene.contacts.friction is not None
+    expected = np.stack([m.t - 0.5 * rough * m.t**2, (scene.n_j > 0) * m.t**2], axis=1)  # mu g = 1
+    before = m.t <= 0.5  # a step that failed may end in the air
+    np.testing.assert_allclose(m.q[before], expected[before], rtol=0, atol=1e-9)

@@ -46,7 +46,7 @@ class EventRun(Run):
     @property
     def ahead(self) -> Array:
         """Times at which a callback may be what has failed [s]."""
-        return np.linspace(self.now, self.horizon, TRIALS)
+        return np.linspace(self.last[0], self.horizon, TRIALS)
 
     @property
     def counts(self) -> Counts:

@@ -14,7 +14,7 @@ from lcpstep.events.contacts.equations import measure_friction
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import list_multipliers, pull
 from lcpstep.events.rows.equations import free_motion, measure_biases, measure_rates, respond_held
-from lcpstep.events.rows.held import constrain, hold_again
+from lcpstep.events.rows.held import constrain, entry, hold_again
 from lcpstep.kernels.acceleration import inverse_mass
 from lcpstep.kernels.dynamics import total_force
 from lcpstep.kernels.vectors import add, clear, copy
@@ -28,7 +28,8 @@ def hold_modes_again(s: Rubbing) -> bool:
     respond_held(s.rows)
     i = hold_again(s.rows)
     if i >= 0:
-        s.rows.culprit = i - s.n_j if s.n_j <= i < s.n_j + s.n_c else -1
+        own = entry(s.rows, i, i)  # not a number where a callback is not finite, and no contact's fault then
+        s.rows.culprit = i - s.n_j if s.n_j <= i < s.n_j + s.n_c and own - own == 0.0 else -1
     return i < 0
 
 

@@ -10,7 +10,7 @@ from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import factor_mass
 from lcpstep.kernels.clock import LEAST
 from lcpstep.kernels.dynamics import gaps
-from lcpstep.kernels.vectors import add, clear, largest
+from lcpstep.kernels.vectors import add, clear, finite, largest
 from lcpstep.pointers import Doubles, abs, after, inf
 
 FEW, MOST = 2, 50  # of Newton's iterations
@@ -36,13 +36,15 @@ def project(s: Rows, t: float, y: Doubles) -> bool:
 def put_on_rows(s: Rows, t: float, y: Doubles) -> bool:
     """Put q onto the rows held, along the ways of those at hand while these help; False where no place is found.
 
-    By Newton's method; what has pushed is left in `held`.
+    By Newton's method; what has pushed is left in `held`. A gap that is no number at the start moves nothing.
     """
     before, anew = inf, False
     clear(s.held, s.n_held)
     for k in range(MOST):
         if not are_open(s, t, y) or (k > 0 and none_open(s, y, CLOSED)):
             return True
+        if k == 0 and not finite(s.change, s.n_held):
+            return False
         worst = largest(s.change, 0.0, s.n_held)
         helps = worst < HELPS * before
         if anew and not helps:
@@ -69,14 +71,14 @@ def push_onto_rows(s: Rows, v: Doubles) -> None:
 
 
 def are_open(s: Rows, t: float, y: Doubles) -> bool:
-    """Whether gaps of rows held are not exactly zero; these, with their signs turned, into `change`."""
+    """Whether gaps of rows held are not exactly zero, as what is no number; with signs turned, into `change`."""
     if s.n_held > s.n_kept:
         list_gaps(s, t, y, s.near)
     else:
         gaps(s.joints, t, y, after(y, s.n_q), s.near)
     for m in range(s.n_held):
         s.change[m] = -s.near[s.row[m]] if s.row[m] < s.n_j + s.n_c else 0.0  # tangents have none
-    return largest(s.change, 0.0, s.n_held) > 0.0
+    return largest(s.change, 0.0, s.n_held) > 0.0 or not finite(s.change, s.n_held)
 
 
 def none_open(s: Rows, q: Doubles, tolerances: float) -> bool:

@@ -23,6 +23,7 @@ from lcpstep.stepping.pieces.codes import (
     EPS,
     FINISHED,
     LATE,
+    LCP_FAILED,
     NOBODY,
     NOT_FINITE,
     OPEN,
@@ -118,6 +119,8 @@ class Steps(Stepwise):
                 c = self.found if code == FINISHED else NOBODY
             if c != NOBODY and code == FINISHED:
                 code = self.take_event(t, c)
+            if code == LCP_FAILED and not poses(self.w):
+                return NOT_FINITE
             if code != FINISHED and code != AGAIN:
                 return code
 
@@ -247,3 +250,8 @@ def is_finite(w: Work) -> bool:
     """Whether state and gaps are finite, and their accelerations in the last piece."""
     known = finite(w.q, w.n_q) and finite(w.v, w.n_q)
     return known and finite(w.gap, w.n_c) and finite(w.rate, w.n_c) and finite(w.half, w.n_c)
+
+
+def poses(w: Work) -> bool:
+    """Whether the contact problem that has no solution is one of finite numbers."""
+    return is_finite(w) and finite(w.W, w.n_c * w.n_c)

@@ -29,7 +29,7 @@ from lcpstep.stepping.pieces.event import straighten_struck
 from lcpstep.stepping.pieces.impulses import strike
 from lcpstep.stepping.pieces.jumps import breaks
 from lcpstep.stepping.pieces.keep import keep
-from lcpstep.stepping.pieces.loop import Steps, is_finite
+from lcpstep.stepping.pieces.loop import Steps
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.piece import penetrates
 from lcpstep.stepping.pieces.polynomial import (
@@ -78,9 +78,7 @@ class PolynomialSteps(Steps):
             self.w.sigma = self.w.end
             return AGAIN
         length = min(self.w.end - self.w.sigma, self.plan.longest)
-        if load(self.m, self.plan, self.w, self.z, now, length):
-            return FINISHED
-        return LCP_FAILED if is_finite(self.w) else NOT_FINITE
+        return FINISHED if load(self.m, self.plan, self.w, self.z, now, length) else LCP_FAILED
 
     def find(self, t: float) -> int:
         """The polynomial, and the first event on it."""

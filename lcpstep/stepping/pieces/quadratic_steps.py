@@ -12,10 +12,10 @@ from lcpstep.kernels.dynamics import external_force, gap_rates, moves, obstacle
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import abs, min
-from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY, NOT_FINITE
+from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY
 from lcpstep.stepping.pieces.event import event
 from lcpstep.stepping.pieces.jumps import breaks
-from lcpstep.stepping.pieces.loop import Steps, is_finite
+from lcpstep.stepping.pieces.loop import Steps
 from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
 from lcpstep.stepping.pieces.race import race
 from lcpstep.stepping.pieces.smooth import look_along, renew_forces
@@ -42,9 +42,7 @@ class QuadraticSteps(Steps):
 
     def begin_piece(self, t: float) -> int:
         """Accelerations and gap quadratics."""
-        if begin_piece(self.m, self.plan, self.w, t + self.w.sigma):
-            return FINISHED
-        return LCP_FAILED if is_finite(self.w) else NOT_FINITE
+        return FINISHED if begin_piece(self.m, self.plan, self.w, t + self.w.sigma) else LCP_FAILED
 
     def find(self, t: float) -> int:
         """The first gap that closes; AGAIN after impacts of many bodies."""

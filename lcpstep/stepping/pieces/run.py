@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.errors import SimulationError
 from lcpstep.gaps import no_way_out
-from lcpstep.kernels.looks import all_finite
 from lcpstep.model import model
 from lcpstep.recording import SPARE, Kept, Recorder, States
 from lcpstep.stepping import adaptive
@@ -52,8 +51,6 @@ class LocatedRun(StepRun):
         self.work.record = recorder.record
         self.loop = kind(self.model, p, self.work)
         self.loop.stop = scene.t_span[1]
-        # The last state known, after a step that failed
-        self.finite: tuple[float, Array, Array] | None = None
 
     def begin(self) -> int:
         """The initial state; a code."""
@@ -135,18 +132,15 @@ class LocatedRun(StepRun):
         """All states kept; a step that failed may have left its numbers behind."""
         self.put_back(self.recorder.record.row)
         s = super().states()
-        if all(map(all_finite, (s.q, s.v, *self.state))):
+        known = self.known(s)
+        if known is s:
             return s
-        fine = np.asarray(np.isfinite(np.hstack([s.q, s.v])).all(axis=1))
-        s = States(*(x[: len(fine) if fine.all() else int(np.argmin(fine))] for x in s))
-        if len(s.t):
-            self.finite = float(s.t[-1]), s.q[-1], s.v[-1]
         m = self.before_failing()
         if m is not None and (self.finite is None or m.t[-1] > self.finite[0]):
             self.finite = float(m.t[-1]), m.q[-1], m.v[-1]
             if not self.kept.given:
-                s = s.and_then(*self.finite, m.impulse[-1], 1.0)
-        return s
+                return known.and_then(*self.finite, m.impulse[-1], 1.0)
+        return known
 
     def before_failing(self) -> Trajectory | None:
         """Another run up to the step that failed; None where its beginning is kept."""
