@@ -8,7 +8,8 @@ run to raise from.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +19,8 @@ from lagrangian.checks import shown
 
 Array = NDArray[np.float64]
 Callback = Callable[..., Any]  # f(t, q, v, p, out) or f(t, x, p, out)
-LOCAL = threading.local()  # .fault: the first exception of this thread since `forget`
+# Of a thread: .fault, the first exception since `forget`; .asking, whether a user's function is at work in Python
+LOCAL = threading.local()
 
 
 class Fault(NamedTuple):
@@ -50,6 +52,19 @@ def note(noted: Fault) -> None:
 def fault() -> Fault | None:
     """The first exception of a callback in this thread since `forget`."""
     return getattr(LOCAL, "fault", None)
+
+
+@contextmanager
+def apart() -> Iterator[None]:
+    """For a run, of which nothing but an unheard interrupt is noted later: a callback of another may have made it."""
+    before, asking = fault(), getattr(LOCAL, "asking", False)
+    forget_all()
+    try:
+        yield
+    finally:
+        LOCAL.asking = asking
+        if not interrupted():
+            LOCAL.fault = before
 
 
 def forget_all() -> None:

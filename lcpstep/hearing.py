@@ -16,7 +16,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from lcpstep.faults import LOCAL, Fault, cause, interrupted, note
+from lcpstep.faults import LOCAL, Fault, apart, cause, interrupted, note
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -97,10 +97,11 @@ def hearing(run: Callable[P, T]) -> Callable[P, T]:
         try:
             if EXPECTED and OPEN.handler is None:
                 _begin()
-            made = run(*given, **named)
-            if interrupted():  # by what was called beside the motion
-                cause()
-            return made
+            with apart():
+                made = run(*given, **named)
+                if interrupted():  # by what was called beside the motion
+                    cause()
+                return made
         finally:
             OPEN.runs -= 1
             if OPEN.runs == 0 and OPEN.handler is not None:

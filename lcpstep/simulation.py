@@ -14,7 +14,7 @@ from lagrangian import Contacts, HybridScene, Scene
 from lagrangian.relations import check_derivatives, is_large
 from lcpstep.depth import too_deep
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
-from lcpstep.faults import fault, forget, forget_all
+from lcpstep.faults import fault, forget
 from lcpstep.hearing import hearing
 from lcpstep.hops import too_short
 from lcpstep.jolts import jolted
@@ -118,7 +118,6 @@ def simulate(
     """
     _check(scene, method, progress, error)
     kept, report = Kept.parse(keep, scene.t_span), progress or (lambda _: None)
-    forget_all()
     if isinstance(scene, HybridScene):
         return _run_modes(scene, method, kept, report)
     if is_large(scene):

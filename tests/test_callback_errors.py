@@ -179,6 +179,23 @@ def test_an_exception_of_one_run_is_not_that_of_the_next():
     assert simulate(falling(falls), Moreau(1e-2)).status is Status.DONE
 
 
+@pytest.mark.parametrize("method", METHODS, ids=IDS)
+def test_an_exception_of_a_run_that_a_callback_makes_is_that_run_s_alone(method):
+    tried = []
+
+    class Foresees:
+        def __call__(self, t, q, v, p, out):
+            out[0] = -8.0
+            if len(tried) < 3:
+                tried.append(t)
+                with pytest.raises(SimulationError):
+                    simulate(falling(tells_the_time), method)
+
+    foreseen, fallen = simulate(falling(Foresees()), method), simulate(falling(falls), method)
+    assert foreseen.status is Status.DONE
+    np.testing.assert_array_equal(foreseen.q, fallen.q)
+
+
 def test_a_function_of_a_system_with_modes_that_raises_is_named():
     def decays(t, x, p, out):
         out[0] = -x[0] * p[0 if t < 0.3 else 7]
