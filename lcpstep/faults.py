@@ -8,7 +8,7 @@ run to raise from.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
@@ -55,7 +55,7 @@ def fault() -> Fault | None:
 
 
 @contextmanager
-def apart() -> Iterator[None]:
+def apart() -> Generator[None, None, None]:
     """For a run, of which nothing but an unheard interrupt is noted later: a callback of another may have made it."""
     before, asking = fault(), getattr(LOCAL, "asking", False)
     forget_all()
