@@ -86,6 +86,10 @@ class Events(Course):
     def __init__(self, clock: Clock, room: int) -> None:
         self.clock, self.room = clock, room
 
+    def ahead(self, now: float, taken: int, goal: int) -> int:
+        """Whether the motion goes on from the time reached, after so many steps."""
+        return AHEAD if now < self.clock.t_end and taken < goal else ARRIVED
+
     def refusal(self) -> int:
         """Whether buffers are full, or there were too many events."""
         if self.clock.record.full(self.room):

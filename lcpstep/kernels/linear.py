@@ -43,13 +43,18 @@ def solve(A: Doubles, pivots: Indices, x: Doubles, n: int) -> None:
     """x <- A^-1 x, with A from `factorise`."""
     for k in range(n):
         x[k], x[pivots[k]] = x[pivots[k]], x[k]
-    for k in range(n):
-        for i in range(k + 1, n):
-            x[i] -= A[i * n + k] * x[k]
-    for k in range(n - 1, -1, -1):
-        for j in range(k + 1, n):
-            x[k] -= A[k * n + j] * x[j]
-        x[k] /= A[k * n + k]
+    solve_triangles(A, n, n, x)
+
+
+def solve_triangles(LU: Doubles, stride: int, n: int, x: Doubles) -> None:
+    """X[:n] <- (L U)^-1 x[:n] for the first n rows and columns of both, `stride` numbers a row; L has ones within."""
+    for i in range(n):
+        for j in range(i):
+            x[i] -= LU[i * stride + j] * x[j]
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            x[i] -= LU[i * stride + j] * x[j]
+        x[i] /= LU[i * stride + i]
 
 
 def invert_matrix(A: Doubles, pivots: Indices, scale: float, column: Doubles, out: Doubles, n: int) -> None:

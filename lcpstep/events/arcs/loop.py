@@ -32,7 +32,7 @@ from lcpstep.events.arcs.motion import (
 from lcpstep.events.codes import REVERSE, SLIP, STAYS_CLOSED, STICK_TANGENT
 from lcpstep.events.flight.contact import SLACK
 from lcpstep.kernels.clock import NOISE, RESOLUTION
-from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
+from lcpstep.kernels.course import DUE, Events
 from lcpstep.kernels.quadratic import first_zero
 from lcpstep.kernels.status import DONE
 from lcpstep.pointers import abs, inf, max, min
@@ -49,9 +49,7 @@ class Course(Events):
 
     def stage(self, goal: int) -> int:
         """Whether the motion is to begin, or goes on."""
-        if not self.s.begun:
-            return DUE
-        return AHEAD if self.s.now < self.s.t_end and self.s.tally.steps < goal else ARRIVED
+        return self.ahead(self.s.now, self.s.tally.steps, goal) if self.s.begun else DUE
 
     def happen(self) -> int:
         """The state at the start of the span; a status."""

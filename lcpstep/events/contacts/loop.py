@@ -38,7 +38,7 @@ from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
 from lcpstep.events.contacts.switching import look_at_guards, switch
 from lcpstep.events.rows.keep import keep, keep_event
-from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
+from lcpstep.kernels.course import DUE, Events
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 from lcpstep.kernels.vectors import clear, copy, copy_indices
 from lcpstep.pointers import Doubles, after, min
@@ -58,8 +58,7 @@ class Course(Events):
         """Whether there is an event, or the motion goes on."""
         if self.s.rows.next != MOVE:
             return DUE
-        taken = self.clock.tally.steps + self.clock.tally.parts
-        return AHEAD if self.s.clock.t0 < self.s.clock.t_end and taken < goal else ARRIVED
+        return self.ahead(self.clock.t0, self.clock.tally.steps + self.clock.tally.parts, goal)
 
     def happen(self) -> int:
         """The event, or what follows from it; a status."""

@@ -24,15 +24,17 @@ LATE = 8.0  # roundings of a time: what two events must be apart to be told from
 
 def contradict(s: Rubbing) -> bool:
     """Whether joints left out ask for another acceleration than the joints held leave, in `a`; `culprit`."""
-    i = contradiction(s.rows, s.a)
-    s.rows.culprit = i if i >= 0 else s.rows.culprit
-    return i >= 0
+    return is_culprit(s, contradiction(s.rows, s.a))
 
 
 def come_apart(s: Rubbing) -> bool:
     """Whether a joint left out is no longer closed at the base state; `culprit`."""
     gaps(s.rows.joints, s.clock.t0, s.q, s.v, s.gap)
-    i = parted(s.rows, s.gap, s.q)
+    return is_culprit(s, parted(s.rows, s.gap, s.q))
+
+
+def is_culprit(s: Rubbing, i: int) -> bool:
+    """Note a joint that a failure is about, unless it is none, -1; whether it is one."""
     s.rows.culprit = i if i >= 0 else s.rows.culprit
     return i >= 0
 

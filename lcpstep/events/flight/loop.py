@@ -17,7 +17,7 @@ from lcpstep.events.flight.near import SHORT, along, hop_end, is_low, low_end, s
 from lcpstep.events.flight.rest import contact_impulse, first_release
 from lcpstep.events.flight.roots import first_contact, polish
 from lcpstep.kernels.clock import NUDGE
-from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
+from lcpstep.kernels.course import DUE, Events
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.pointers import abs, inf, max, min
 
@@ -31,9 +31,7 @@ class Course(Events):
 
     def stage(self, goal: int) -> int:
         """Whether the motion is to begin, or goes on."""
-        if not self.s.begun:
-            return DUE
-        return AHEAD if self.s.now < self.s.t_end and self.s.tally.steps < goal else ARRIVED
+        return self.ahead(self.s.now, self.s.tally.steps, goal) if self.s.begun else DUE
 
     def happen(self) -> int:
         """The state at the start of the span; a status."""

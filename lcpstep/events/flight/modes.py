@@ -48,9 +48,7 @@ def settle(s: Flight, u: float) -> None:
     """On the obstacle now, leaving it with gap velocity u >= 0: which mode comes next."""
     t, r = s.now, s.r
     s.find_corners(t)
-    y, w, alpha = on_obstacle(s, t, u)
-    leave_from(s, t, y, w)
-    s.q0, s.v0 = s.q[0], s.v[0]
+    alpha = start_on_obstacle(s, u)
     s.u0, s.on_surface, s.mode, s.alpha0, s.peak = u, True, FREE, alpha, abs(alpha)
     s.g, s.u, s.alpha = 0.0, u, alpha
     if alpha > 0.0 or (alpha == 0.0 and u > 0.0):
@@ -64,6 +62,14 @@ def settle(s: Flight, u: float) -> None:
             # the contact force up to t + T, which counts as closed, gives the rest
             s.impulse[0] -= u / s.response
             stick(s, t + T)
+
+
+def start_on_obstacle(s: Flight, u: float) -> float:
+    """A flight, or rest, begins on the obstacle now with the gap velocity u; the gap acceleration."""
+    y, w, alpha = on_obstacle(s, s.now, u)
+    s.q0, s.v0 = s.q[0], s.v[0]
+    leave_from(s, s.now, y, w)
+    return alpha
 
 
 def chatter_left(s: Flight, u: float, alpha: float) -> float:
@@ -104,9 +110,7 @@ def go_on(s: Flight, t: float, g: float, u: float) -> None:
 
 def stick(s: Flight, t_log: float) -> None:
     """From now on the contact is closed; t_log: when the log says so (the end of a chattering sequence)."""
-    y, w, alpha = on_obstacle(s, s.now, 0.0)
-    s.q0, s.v0 = s.q[0], s.v[0]
-    leave_from(s, s.now, y, w)
+    alpha = start_on_obstacle(s, 0.0)
     s.mode, s.g, s.u, s.alpha = CLOSED, 0.0, 0.0, min(alpha, 0.0)
     log(s, t_log, STAYS_CLOSED, 0.0, 0.0, 0.0)
 
@@ -119,9 +123,7 @@ def settle_again(s: Flight) -> None:
 
 def release(s: Flight, alpha: float) -> None:
     """The closed contact opens now, with the gap acceleration alpha."""
-    y, w, _ = on_obstacle(s, s.now, 0.0)
-    s.q0, s.v0 = s.q[0], s.v[0]
-    leave_from(s, s.now, y, w)
+    start_on_obstacle(s, 0.0)
     log(s, s.now, RELEASE, 0.0, 0.0, 0.0)
     s.mode, s.on_surface, s.alpha0 = FREE, True, alpha
     s.g, s.u, s.alpha = 0.0, 0.0, alpha

@@ -16,7 +16,7 @@ from lcpstep.events.parabolas.modes import jump, settle
 from lcpstep.events.parabolas.state import Mechanism
 from lcpstep.events.rows.equations import free_motion, measure_rates, respond
 from lcpstep.events.rows.keep import keep
-from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Events
+from lcpstep.kernels.course import DUE, Events
 from lcpstep.kernels.dynamics import gaps
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.kernels.vectors import copy, product
@@ -32,9 +32,7 @@ class Course(Events):
 
     def stage(self, goal: int) -> int:
         """Whether there is an event, or the motion goes on."""
-        if self.s.next != MOVE:
-            return DUE
-        return AHEAD if self.s.t0 < self.s.t_end and self.s.tally.steps < goal else ARRIVED
+        return self.ahead(self.s.t0, self.s.tally.steps, goal) if self.s.next == MOVE else DUE
 
     def happen(self) -> int:
         """The event, or what follows from it; a status."""

@@ -18,6 +18,7 @@ from lcpstep.events.rows.on_joints import leave_joints, leave_joints_again, put_
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import inverse_mass
 from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.linear import solve_triangles
 from lcpstep.kernels.vectors import add, clear, copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, inf, max
 
@@ -136,14 +137,7 @@ def hold_again(s: Rows) -> int:
 
 def solve_held(s: Rows, x: Doubles) -> None:
     """X <- (L U)^-1 x."""
-    r, k = s.n_r, s.n_held
-    for i in range(k):
-        for j in range(i):
-            x[i] -= s.L[i * r + j] * x[j]
-    for i in range(k - 1, -1, -1):
-        for j in range(i + 1, k):
-            x[i] -= s.L[i * r + j] * x[j]
-        x[i] /= s.L[i * r + i]
+    solve_triangles(s.L, s.n_r, s.n_held, x)
 
 
 def add_column(s: Rows, R: Doubles, i: int, x: float, a: Doubles) -> None:

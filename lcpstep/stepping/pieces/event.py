@@ -30,12 +30,7 @@ from lcpstep.stepping.pieces.switches import count_turn, idle, stick
 def event(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     """The impact of contact c at w.sigma of the step that began at t, or that of a corner, and what it changes."""
     now = t + w.sigma
-    if c != CORNER and w.rate[c] >= -ROUNDING * speed_terms(plan, w, c):  # a touch: it does not strike
-        w.gap[c], w.grounded[c] = 0.0, GROUND
-        if w.rate[c] <= ROUNDING * speed_terms(plan, w, c):
-            stick(w, c, now)
-            count_turn(m, plan, w, c, 0.0, False)
-        idle(w)
+    if c != CORNER and touches(m, plan, w, c, now, 0.0):
         return FINISHED
     if not renew_mobility(m, plan, w, now):
         return NOT_FINITE
@@ -56,6 +51,22 @@ def event(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     if w.record.keeps_event(now):
         keep(w, now, 1.0)
     return FINISHED
+
+
+def touches(m: Model, plan: Plan, w: Work, c: int, t: float, slow: float) -> bool:
+    """Whether contact c, whose gap is zero at t, does not strike; it stays closed if it rises no faster than `slow`.
+
+    Or by no more than rounding.
+    """
+    still = ROUNDING * speed_terms(plan, w, c)
+    if not w.rate[c] >= -still:
+        return False
+    w.gap[c], w.grounded[c] = 0.0, GROUND
+    if w.rate[c] <= still or w.rate[c] <= slow:
+        stick(w, c, t)
+        count_turn(m, plan, w, c, 0.0, False)
+    idle(w)
+    return True
 
 
 def lift(w: Work, x: Doubles, c: int, distance: float) -> None:

@@ -170,7 +170,7 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
         return c, 0.0
     low, high = 0.0, -1.0
     for _ in range(POLISHING):
-        look(m, plan, w, t, tau)
+        look(m, w, t, tau)
         u = w.rate[c] + 2.0 * tau * w.half[c]
         if abs(w.gap_try[c]) <= max(0.125 * plan.slack, driven_by(w, c, t)):
             return c, tau
@@ -182,39 +182,39 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
             break
         change = -w.gap_try[c] / u
         if tau + change > rest:
-            look(m, plan, w, t, rest)  # a bump narrower than the piece may rise at its end
+            look(m, w, t, rest)  # a bump narrower than the piece may rise at its end
             if w.gap_try[c] >= -ON_THE_SURFACE * plan.slack:
                 return NOBODY, rest
-            return c, between(m, plan, w, c, t, tau, rest)
+            return c, between(m, w, c, t, tau, rest)
         if tau + change <= 0.0:
             break
         tau += change
         if abs(change) <= EPS * tau:
             return c, tau
-    look(m, plan, w, t, tau)
+    look(m, w, t, tau)
     if w.gap_try[c] > 0.0:
         if high > tau:  # time may be too coarse for the step back from where the gap was closed
-            return c, between(m, plan, w, c, t, tau, high)
+            return c, between(m, w, c, t, tau, high)
         # on a steep side the state has no place that is nearer to zero
         falls = w.rate[c] + 2.0 * tau * w.half[c] < 0.0
         near = falls and w.gap_try[c] <= gap_rounding(m, w.G, w.q, c, 0.0)
         return (c if near else NOBODY), tau
     if low > tau or not (low > 0.0 or w.gap[c] > plan.slack):
         return c, tau
-    return c, between(m, plan, w, c, t, low, tau)
+    return c, between(m, w, c, t, low, tau)
 
 
-def look(m: Model, plan: Plan, w: Work, t: float, tau: float) -> None:
+def look(m: Model, w: Work, t: float, tau: float) -> None:
     """The gaps at tau after the base of the piece, which is at t, into w.gap_try."""
     look_along(w, tau)
     gaps(m, t + tau, w.q_try, w.v, w.gap_try)
 
 
-def between(m: Model, plan: Plan, w: Work, c: int, t: float, low: float, high: float) -> float:
+def between(m: Model, w: Work, c: int, t: float, low: float, high: float) -> float:
     """Where a gap that is open at `low` and negative at `high` closes between them: by bisection."""
     w.bracket.begin(low, high, True, 0.5 * (low + high))
     while w.bracket.seek(EPS * w.bracket.b):
-        look(m, plan, w, t, w.bracket.x)
+        look(m, w, t, w.bracket.x)
         w.bracket.take(1.0 if w.gap_try[c] > 0.0 else -1.0, 0.0)  # the first zero, where rounding makes many
     return w.bracket.b
 

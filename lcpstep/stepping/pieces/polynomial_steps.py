@@ -17,19 +17,17 @@ from lcpstep.stepping.pieces.codes import (
     CORNER,
     EPS,
     FINISHED,
-    GROUND,
     LCP_FAILED,
     LEFT,
     NOBODY,
     NOT_FINITE,
-    ROUNDING,
     SAME_TIME,
 )
-from lcpstep.stepping.pieces.event import straighten_struck
+from lcpstep.stepping.pieces.event import straighten_struck, touches
 from lcpstep.stepping.pieces.impulses import strike
 from lcpstep.stepping.pieces.jumps import breaks
 from lcpstep.stepping.pieces.keep import keep
-from lcpstep.stepping.pieces.loop import Steps
+from lcpstep.stepping.pieces.loop import Steps, is_finite
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.piece import penetrates
 from lcpstep.stepping.pieces.polynomial import (
@@ -53,7 +51,7 @@ from lcpstep.stepping.pieces.smooth import (
     settle_state,
 )
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.pieces.switches import count_turn, idle, release, stick
+from lcpstep.stepping.pieces.switches import idle, release
 from lcpstep.stepping.pieces.times import at_corner, within
 
 SLOW = 1e-3  # of a step: a touch is no event twice within so short a time
@@ -206,16 +204,12 @@ def slide(m: Model, w: Work, t: float) -> None:
 
 def land(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     """Contact c lands at w.sigma: an impact, or a touch without one."""
-    still = ROUNDING * speed_terms(plan, w, c) if c != CORNER else 0.0
-    if c != CORNER and w.rate[c] >= -still:
-        w.gap[c], w.grounded[c] = 0.0, GROUND
+    if c != CORNER:
         again = w.sigma - w.last[c] <= SLOW * plan.h
-        if w.rate[c] <= still or (again and w.rate[c] <= SLOW * plan.h * acceleration_terms(m, w, c)):
-            stick(w, c, t)
-            count_turn(m, plan, w, c, 0.0, False)
-        w.last[c] = w.sigma
-        idle(w)
-        return FINISHED
+        slow = SLOW * plan.h * acceleration_terms(m, w, c) if again else 0.0
+        if touches(m, plan, w, c, t, slow):
+            w.last[c] = w.sigma
+            return FINISHED
     if not acceleration(m, plan, w, t, w.q, w.v, w.a):
         return NOT_FINITE
     gap_rates(m, t, w.q, w.v, w.G, w.gap_t)

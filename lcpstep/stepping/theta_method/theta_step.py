@@ -66,7 +66,7 @@ def take_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) 
     if not c.solved:
         predict_active(m, plan, s, c, t)
     code = step(m, plan, s, c, t, t_next)
-    while c.projected and code == FINISHED and closes_again(m, plan, s, c, t_next):
+    while c.projected and code == FINISHED and closes_again(m, s, c, t_next):
         code = step(m, plan, s, c, t, t_next)
     if code != FINISHED:
         return code
@@ -105,7 +105,7 @@ def drifted(m: Model, plan: Plan, s: State, c: Rows, i: int, t: float) -> float:
     return (RESTING + RESOLUTION * s.steps) * (s.far[i] + size) + UNTOLD * abs(t * c.H_t[i])
 
 
-def closes_again(m: Model, plan: Plan, s: State, c: Rows, t_next: float) -> bool:
+def closes_again(m: Model, s: State, c: Rows, t_next: float) -> bool:
     """Add to the active ones those contacts that were closed before, and are entered; were there any?
 
     A projected gap is zero, not below, so that the prediction g + (h/2) u alone would open what rests.
