@@ -15,7 +15,12 @@ from pathlib import Path
 SCALARS = ("bint", "Py_ssize_t", "double")  # each holds those before it
 POINTERS = ("Doubles", "Indices", "Flags", "Callback")
 WORDS = {"int": "Py_ssize_t", "float": "double", "bool": "bint", "Any": "object"} | {x: x for x in POINTERS}
-IN_C = {"lcpstep.pointers", "lcpstep.arrays", "lcpstep.stepping.pieces.codes"}  # whose `.pxd` says all
+IN_C = {
+    "lcpstep.pointers",
+    "lcpstep.arrays",
+    "lcpstep.kernels.roundings",
+    "lcpstep.stepping.pieces.codes",
+}  # whose `.pxd` says all
 MERGED = IN_C | {
     "lcpstep.kernels.vectors",
     "lcpstep.kernels.one_row",

@@ -11,6 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 
+def require_kept(times: Array, kept: Array) -> None:
+    """ValueError where one of these times is none of the kept states."""
+    if not np.all(np.isin(times, kept)):
+        raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
+
+
 def asked(t: ArrayLike, known: Array) -> Array:
     """Times at which states are asked for, (m,); ValueError where they are none within those known of the run."""
     if len(known) == 0:

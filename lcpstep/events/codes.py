@@ -15,6 +15,7 @@ LOOKED, ENTERED, JUMPED = range(3)  # whether guards of modes wait to be looked 
 IMPACT, ACCUMULATION, STAYS_CLOSED, RELEASE, SLIP, STICK_TANGENT, REVERSE, JAM = (int(kind) for kind in Kind)
 RELATIVE_STEP = 7.4e-5  # of differences of the field, of fourth order: eps^(1/5)/10
 EDGE = 1e-9  # relative distance of a friction force from the edge of its cone, below which it is on it; and alike
+LOW = 1e-6  # of the positions at hand: higher gaps are as well known by their difference
 NO_IMPULSES, NO_FORCES = -2, -3  # no impulses, or no forces, of the contacts that would do
 INSIDE = -4  # a reset has put the state inside an obstacle
 NO_SURFACE = -5  # the obstacle of a contact that is met has closed

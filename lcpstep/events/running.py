@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.answer import require_kept
 from lcpstep.events.codes import NO_FORCES, NO_IMPULSES, STATUS
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.between import accelerated, by_dense_output, last_rows
@@ -169,8 +170,8 @@ class Between(ABC):
 
     def __call__(self, times: Array) -> tuple[Array, Array]:
         """Q and v at these times, each (m, n_q); ValueError where the state before one was not kept."""
-        if not self.complete and not np.all(np.isin(times, self.s.t)):
-            raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
+        if not self.complete:
+            require_kept(times, self.s.t)
         times = np.ascontiguousarray(times)
         return self.evaluate(times, last_rows(self.s.t, times, 0, len(self.s.t) - 1))
 

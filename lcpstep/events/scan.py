@@ -14,11 +14,12 @@ from lcpstep.faults import cause, forget
 from lcpstep.kernels.function import Function
 from lcpstep.kernels.model import Model
 from lcpstep.turns import turns
+from lcpstep.turns.source import GOLDEN
 
 Array = NDArray[np.float64]
 # Intervals per period of each oscillation, of the forcing, of the span
 PER_PERIOD, PER_FORCING, PER_SPAN = 10, 16, 50
-SAMPLES, WINDOWS, GOLDEN = 512, 16, 0.6180339887498949  # of the motion of obstacles, to see how fast it turns
+SAMPLES, WINDOWS = 512, 16  # of the motion of obstacles, to see how fast it turns
 # Irregular: no oscillation hides between them
 PLACES = np.arange(SAMPLES) + np.arange(SAMPLES) * GOLDEN % 1.0
 SLOPE = 1e-7  # of the time looked at: step of a difference

@@ -13,10 +13,9 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.pointers import abs, inf, max, min
 
-RESOLUTION = 2.0**-52
-NOISE = 64 * RESOLUTION  # relative to the terms of a sum: what rounding may leave of it
 LEAST = 2.0**-960  # numbers that have their digits in products, too
 NUDGE = 2.0**-49  # relative; keeps accelerations on their own side of a corner
 

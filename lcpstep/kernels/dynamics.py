@@ -13,7 +13,7 @@ import cython
 
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import copy, product, product_between
-from lcpstep.pointers import Doubles, after
+from lcpstep.pointers import Doubles, abs, after
 
 
 def external_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> None:
@@ -34,6 +34,11 @@ def external_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> 
             for j in range(n):
                 k = i * n + j
                 out[i] -= m.M[k] * c[3 * j + 2] + m.C[k] * c[3 * j + 1] + m.K[k] * c[3 * j]
+
+
+def harmonic_terms(m: Model, i: int) -> float:
+    """Size of the terms of the harmonic force on coordinate i; 0 of a callback's, whose terms are not known."""
+    return 0.0 if m.force.given else abs(m.constant[i]) + abs(m.cosine[i]) + abs(m.sine[i])
 
 
 @cython.ccall

@@ -11,7 +11,7 @@ from math import sqrt
 
 import cython
 
-from lcpstep.pointers import inf
+from lcpstep.pointers import abs, inf
 
 
 def first_zero(g: float, u: float, half: float) -> float:
@@ -38,3 +38,8 @@ def may_reach_zero(g: float, u: float, half: float, tau: float) -> bool:
     if half <= 0.0:  # lowest at the ends
         return g <= 0.0 or g + tau * (u + tau * half) <= 0.0
     return g <= 0.0 or g + tau * u <= 0.0  # above its tangent
+
+
+def highest(g: float, u: float, alpha: float, tau: float) -> float:
+    """How high, at most, a gap is within [0, tau] that has the acceleration alpha."""
+    return g + tau * (abs(u) + 0.5 * tau * abs(alpha))

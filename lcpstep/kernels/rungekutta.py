@@ -12,7 +12,6 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles, indices
-from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.dop853 import (
     ALL,
     DENSE,
@@ -26,6 +25,7 @@ from lcpstep.kernels.dop853 import (
     WEIGHTS,
     table,
 )
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import DONE, NOT_FINITE, STEP_TOO_SMALL
 from lcpstep.kernels.vectors import copy, finite
 from lcpstep.pointers import Doubles, abs, after, inf, max, min

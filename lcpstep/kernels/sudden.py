@@ -13,10 +13,11 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import largest
 from lcpstep.pointers import Doubles, abs, max
 
+JUMP = 1e-9  # of the velocities at hand: one that changes by less at a corner does so by rounding
 MORE = 4.0  # times what steps have left of a velocity so far
 PLACES = 8.0  # roundings of a place: those of the stages of a step, and of where it leads
 SHARE = 0.5  # of the whole: what is left of a jump between two ends as near as can be, and not of drift

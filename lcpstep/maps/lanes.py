@@ -85,7 +85,7 @@ def advance(
 
 @cython.ccall
 def note_touching(m: Model, lanes: Lanes, side: float) -> None:
-    """Contacts that begin at rest at next to no gap are closed: see `lcpstep.stepping.theta_method.beginning`."""
+    """Contacts that begin at rest at next to no gap are closed: see `lcpstep.stepping.theta_method.theta_loop`."""
     external_force(m, side, lanes.nobody, lanes.nobody, lanes.force)
     force = abs(lanes.force[0])
     if not m.force.given:

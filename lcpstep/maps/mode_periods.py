@@ -14,8 +14,7 @@ import numpy as np
 
 from lcpstep.arrays import doubles, indices
 from lcpstep.events.hybrid.field import Machine, approaches, field, guard_gradient, scalar
-from lcpstep.events.hybrid.kinds import ARRIVE, NOT_SLIDING
-from lcpstep.events.hybrid.layout import SWITCH_LEAD
+from lcpstep.events.hybrid.kinds import ARRIVE, NOT_SLIDING, SWITCH_LEAD
 from lcpstep.events.hybrid.loop import Switching
 from lcpstep.events.hybrid.state import Motion
 from lcpstep.kernels.function import Functions

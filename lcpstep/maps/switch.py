@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from lagrangian import HybridScene, checks
 from lcpstep.errors import LcpStepError, UnknownName
 from lcpstep.events import EventDriven
-from lcpstep.events.hybrid.layout import SWITCH_LEAD
+from lcpstep.events.hybrid.kinds import SWITCH_LEAD
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.trajectory import HybridTrajectory, log_of
 from lcpstep.maps.modes import told

@@ -7,16 +7,20 @@ from __future__ import annotations
 
 import math
 
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import BUFFER_FULL
-from lcpstep.stepping.steps import RESOLUTION, WHOLE
+from lcpstep.stepping.steps import WHOLE
 from lcpstep.trajectory import Status
 
 # Why the loop returned, besides its method's own reasons: at the end of the span, to have its buffers emptied, for
 # good, and for what Python makes
 REACHED, PAUSED, TOO_SMALL, WANTED = int(Status.DONE), BUFFER_FULL, int(Status.STEP_TOO_SMALL), -3
 LEVELS = 52  # halvings of the longest step, at most
+OWN = LEVELS + 2  # place of the matrices of a part as long as no level's; those of its halves come next
 NOISE = 8 * RESOLUTION  # relative differences that are rounding
 PLENTY = 0.8  # of the share, that twice the step is expected to take where it is tried
+LEAST_SHARE = 1e-3  # of the tolerance, in steps with events, or with a force that jumps
+NEAR = 3.0  # errors of what ends a piece or a mode: from where on it may have come to zero
 FIRST = 1e-6  # of the span: the first step
 LOOK = 4096  # attempts between two looks at the outside world, at most
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from lcpstep.arrays import doubles
 from lcpstep.kernels.acceleration import free_acceleration
-from lcpstep.kernels.dynamics import mass
+from lcpstep.kernels.dynamics import harmonic_terms, mass
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import finite, largest, product, size_of_product
 from lcpstep.pointers import Doubles, abs, after, inf, max
@@ -49,17 +49,18 @@ def ways(m: Model, q: Any, v: Any, step: float) -> float:
 
 
 @cython.ccall
-def own_places(m: Model, q: Any, v: Any, step: float, target: Any) -> None:
+def own_places(offsets: Any, found: float, target: Any) -> None:
     """Places as each contact has them into the target (n_c,): another one's offset rounds no gap of its.
 
     Where all of its own are zero, the others' tell of a smaller scale, but of none above 1.
+    found : the largest of places and ways within a step
     """
-    found, own = ways(m, q, v, step), doubles(target)
-    most = largest(m.offset, found, m.n_c)
+    n, offset, own = len(offsets), doubles(offsets), doubles(target)
+    most = largest(offset, found, n)
     if most == 0.0 or most > 1.0:
         most = 1.0
-    for c in range(m.n_c):
-        own[c] = max(found, abs(m.offset[c]))
+    for c in range(n):
+        own[c] = max(found, abs(offset[c]))
         if own[c] == 0.0:
             own[c] = most
 
@@ -92,16 +93,9 @@ def driven(m: Model, t: float, q: Doubles, v: Doubles, h: float, implicit: Doubl
     free_acceleration(m, t, q, v, M, y, a)
     if m.linear:
         for i in range(n):
-            f[i] = 0.0
-            for j in range(n):
-                f[i] += m.M[i * n + j] * a[j]
-            f[i] = abs(f[i])
-            if not m.force.given:
-                f[i] = abs(m.constant[i]) + abs(m.cosine[i]) + abs(m.sine[i])
+            f[i] = abs(product(m.M, a, i, n)) if m.force.given else harmonic_terms(m, i)
         for i in range(n):
-            a[i] = 0.0
-            for j in range(n):
-                a[i] += abs(implicit[i * n + j]) * f[j]
+            a[i] = size_of_product(implicit, f, i, n)
     return h * h * largest(a, 0.0, n) if finite(a, n) else 0.0
 
 
@@ -158,8 +152,7 @@ def push(m: Model, t: float, q: Doubles, v: Doubles, M: Doubles, work: Doubles) 
         f[i] = abs(product(M, a, i, n))
         if m.linear:
             f[i] += size_of_product(m.K, q, i, n) + size_of_product(m.C, v, i, n)
-            if not m.force.given:
-                f[i] += abs(m.constant[i]) + abs(m.cosine[i]) + abs(m.sine[i])
+            f[i] += harmonic_terms(m, i)
         square += f[i] * f[i] / M[i * n + i]
     for i in range(n):
         a[i] = f[i] / M[i * n + i] if square < inf else 0.0

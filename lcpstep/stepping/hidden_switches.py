@@ -32,7 +32,7 @@ class Switches:
     held : (n,)                1 where it was so at the start
     mobility : (n,)            when last in contact
     response : (n,)            largest velocity that an impulse makes
-    slack                      by which velocities of what sticks may differ: its rounding is taken for rest
+    creep                      by which velocities of what sticks may differ: its rounding is taken for rest
     turned : (n,)              impulse of friction with the wrong sign
     drop : (n_c,)              by which the force of friction falls where what sticks begins to slide
     apart : (n_q,)             what the impulses of all rows, joints too, make of the velocities in the step, less
@@ -46,7 +46,7 @@ class Switches:
     """
 
     def __init__(self, n_q: int, n_c: int, n: int, n_all: int) -> None:
-        self.n_q, self.n_c, self.n, self.slack = n_q, n_c, n, 0.0
+        self.n_q, self.n_c, self.n, self.creep = n_q, n_c, n, 0.0
         self.kept = np.zeros(9 * n + n_q + n_c + n_all * n_all), np.zeros(4 * n, dtype=np.intp)
         self.force, self.holds = doubles(self.kept[0]), indices(self.kept[1])
         self.impulse, self.mobility = after(self.force, 3 * n), after(self.force, 6 * n)
@@ -62,7 +62,7 @@ class Switches:
         clear(self.turned, self.n)
         clear(self.apart, self.n_q)
         clear(self.drop, self.n_c)
-        self.slack = 0.0
+        self.creep = 0.0
 
     def note(self, part: int, plan: Plan, s: State, rows: Rows, before: Doubles, slow: float) -> None:
         """Rows of a part that has been taken; `before`: gap velocities at its start."""
@@ -104,7 +104,7 @@ class Switches:
             kinetic = rows.coefficients.sliding[i]
             if W > 0.0 and self.holds[first + k] > 0 and self.holds[k] > 0:
                 rounding = NO_APPROACH * size_of_rate(rows, s.v, k, s.n_q)
-                self.slack = max(self.slack, 2.0 * rounding * self.response[k] / W)
+                self.creep = max(self.creep, 2.0 * rounding * self.response[k] / W)
             if self.held[k] > 0:
                 mu = rows.coefficients.sticking[i]
                 moves = self.holds[first + k] > 0 or abs(end) > slow  # at its limit others may hold it

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lcpstep.answer import require_kept
 from lcpstep.kernels import between
 
 Array = NDArray[np.float64]
@@ -36,8 +37,8 @@ class Between(ABC):
         """Q and v at these times, each (m, n_q); ValueError for one between states that are not known."""
         last, times = len(self.t) - 1, np.ascontiguousarray(times)
         i = between.last_rows(self.t, times, 0, max(last - 1, 0))
-        if not (self.every_step or np.all((times == self.t[i]) | (times == self.t[last]))):
-            raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
+        if not self.every_step:
+            require_kept(times, self.t)
         return (self.q[i], self.v[i]) if last == 0 else self.within(times, i)
 
     @abstractmethod

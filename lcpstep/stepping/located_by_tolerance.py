@@ -14,7 +14,7 @@ from lcpstep.kernels.dynamics import gaps
 from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.vectors import distance, largest
 from lcpstep.pointers import abs, after, inf, max, min, whole
-from lcpstep.stepping.adaptive import REACHED
+from lcpstep.stepping.adaptive import NEAR, REACHED
 from lcpstep.stepping.hidden_forces import hidden, late
 from lcpstep.stepping.located_parts import Parts
 from lcpstep.stepping.pieces.codes import (
@@ -30,7 +30,6 @@ from lcpstep.stepping.pieces.times import driven_by
 from lcpstep.stepping.step_control import stamp
 
 EARLY = 1.0 / 32.0  # of a step: an event before it leaves nothing to compare
-NEAR = 3.0  # errors of a gap: from where on it may have closed
 TRIALS = 4  # of a step whose event comes at another time
 
 
@@ -85,7 +84,7 @@ class Attempts(Parts):
         self.apart_q, self.apart_v = wrong_q, wrong_v
         self.far_q, self.far_v = largest(self.two.q, 0.0, self.w.n_q), largest(self.two.v, 0.0, self.w.n_q)
         if self.two.time > 0.0:
-            self.rate = distance(self.two.v, self.saved.v, self.w.n_q) / self.two.time
+            self.acceleration = distance(self.two.v, self.saved.v, self.w.n_q) / self.two.time
         self.happened = self.two.code == STOPPED or self.record.event > self.event
 
     def is_stuck(self) -> bool:

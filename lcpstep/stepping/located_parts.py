@@ -15,7 +15,7 @@ from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.vectors import clear, copy, copy_indices, largest
 from lcpstep.pointers import Doubles, after, inf, nan, whole
-from lcpstep.stepping.adaptive import LEVELS
+from lcpstep.stepping.adaptive import OWN
 from lcpstep.stepping.pieces.codes import CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
 from lcpstep.stepping.pieces.corners import find_corners
 from lcpstep.stepping.pieces.keep import keep_now
@@ -26,7 +26,6 @@ from lcpstep.stepping.pieces.switches import COLLAPSE
 from lcpstep.stepping.step_control import Control
 
 MATRICES = ["A_inverse", "AG", "WA"]  # of a plan, that depend on h
-OWN = LEVELS + 2  # place of those of a part as long as none
 
 
 class Led:

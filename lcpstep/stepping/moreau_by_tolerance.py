@@ -34,16 +34,14 @@ from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.clock import Clock
 from lcpstep.kernels.vectors import clear, copy, copy_indices, distance, largest
 from lcpstep.pointers import abs, after, inf, max, min
-from lcpstep.stepping.adaptive import LEVELS
+from lcpstep.stepping.adaptive import LEAST_SHARE, OWN
 from lcpstep.stepping.hidden_edges import Edges, dip
 from lcpstep.stepping.hidden_switches import Switches
-from lcpstep.stepping.step_control import LEAST_SHARE, Control, stamp
+from lcpstep.stepping.step_control import Control, stamp
 from lcpstep.stepping.steps import LATE
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED
 from lcpstep.stepping.theta_method.responses import refit
 from lcpstep.stepping.theta_method.theta_loop import Steps, look
-
-OWN = LEVELS + 2  # place of the matrices of a step that is as long as none; those of its halves come next
 
 
 class Attempts(Control):
@@ -121,7 +119,7 @@ class Attempts(Control):
         self.full = code == BUFFER_FULL and self.event > 0
         self.failed = code != FINISHED
         if not self.struck and h > 0.0:
-            self.rate = distance(self.s.v, self.begin_v, n) / h
+            self.acceleration = distance(self.s.v, self.begin_v, n) / h
         self.far_q, self.far_v = largest(self.s.q, 0.0, n), largest(self.s.v, 0.0, n)
         return code
 
@@ -140,7 +138,7 @@ class Attempts(Control):
         if not self.struck:
             apart = distance(self.one_v, self.s.v, self.s.n_q)
             apart = max(apart, self.switches.unseen(h, self.plan, self.s, self.rows))
-            self.apart_v = max(self.apart_v, apart - self.switches.slack)
+            self.apart_v = max(self.apart_v, apart - self.switches.creep)
         return FINISHED
 
     def look_for_edges(self, h: float, slow: float) -> None:

@@ -19,7 +19,7 @@ from lcpstep.kernels.model import Model
 from lcpstep.model import coefficients, models
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
-from lcpstep.stepping.extent import is_stiff, own_places, places
+from lcpstep.stepping.extent import is_stiff, own_places, places, ways
 from lcpstep.stepping.moreau_by_tolerance import Attempts
 from lcpstep.stepping.step_run import StepRun
 from lcpstep.stepping.steps import RESTING, inverse, number, start_side
@@ -52,7 +52,7 @@ class MoreauRun(StepRun):
         self.impulse = self.place.arrays["impulse"]
         self.slack = RESTING * (places(self.model, scene.q0, scene.v0, method.h) or 1.0)
         own = self.place.arrays["slack"]
-        own_places(self.model, scene.q0, scene.v0, method.h, own)
+        own_places(self.model.arrays["offset"], ways(self.model, scene.q0, scene.v0, method.h), own)
         own *= RESTING
         made = self.plan_for(self.stretches[0][0])
         self.place.record = recorder.record

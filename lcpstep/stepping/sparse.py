@@ -23,13 +23,15 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene, checks
 from lcpstep.gaps import no_way_out
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.lcp.saddle import Point, Problem
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
+from lcpstep.stepping.extent import own_places
 from lcpstep.stepping.sparse_blows import Blows, forced, opens_and_closes
 from lcpstep.stepping.sparse_equations import Equations, Step
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import LATE, RESOLUTION, RESTING, ROUNDING, TOUCHING, UNTOLD, largest, start_side
+from lcpstep.stepping.steps import LATE, RESTING, ROUNDING, TOUCHING, UNTOLD, largest, start_side
 from lcpstep.trajectory import Counts, Kind, Status
 
 if TYPE_CHECKING:
@@ -58,9 +60,9 @@ class SparseRun(StepRun):
         super().__init__(method, scene, kept, recorder, LOOKS)
         self.equations = Equations(scene)
         size = largest(scene.q0, method.h * np.asarray(scene.v0))
-        own, most = np.maximum(size, np.abs(self.equations.offset)), largest(self.equations.offset)
-        # Of each contact: another one's offset rounds no gap of its, and tells of no scale above 1
-        self.slack = RESTING * np.where(own > 0.0, own, min(most, 1.0) or 1.0)
+        self.slack = np.zeros(n_c)
+        own_places(self.equations.offset, size, self.slack)
+        self.slack *= RESTING
         self.q, self.v, self.now = np.array(scene.q0), np.array(scene.v0), scene.t_span[0]
         self.p, self.impulse = np.zeros(n_c), np.zeros(n)
         self.far = np.zeros(n_c)  # size of the largest terms of closed gaps since these closed
@@ -96,7 +98,7 @@ class SparseRun(StepRun):
         return Status.DONE
 
     def note_touching(self) -> None:
-        """Contacts that begin at rest at next to no gap are closed up to that: see `theta_method.beginning`."""
+        """Contacts that begin at rest at next to no gap are closed up to that: see `theta_method.theta_loop`."""
         h, F = self.plan.h, np.abs(self.F)
         if self.equations.harmonic:
             F = np.maximum(F, sum(np.abs(term) for term in self.equations.terms))

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lcpstep.kernels.recurrence import looks_back
-from lcpstep.stepping.steps import LEFT, RESOLUTION, RETURNED, ROUNDING, TURNS
+from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.stepping.steps import LEFT, RETURNED, ROUNDING, TURNS
 
 Array = NDArray[np.float64]
 

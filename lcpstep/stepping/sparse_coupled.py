@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Joints, Scene
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.recording import Kept
 from lcpstep.stepping.sparse import SparseRun
 from lcpstep.stepping.sparse_blows import Blows
 from lcpstep.stepping.sparse_coulomb import STICK, Coupled, Point, Problem
 from lcpstep.stepping.sparse_equations import Equations, JointRows, Step
 from lcpstep.stepping.sparse_stiction import Stiction
-from lcpstep.stepping.steps import CANCELLED, CONTRADICTION, CONVERGED, NO_APPROACH, RESOLUTION, ROUNDING
+from lcpstep.stepping.steps import CANCELLED, CONTRADICTION, CONVERGED, NO_APPROACH, ROUNDING
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS
 from lcpstep.trajectory import Status
 

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from lagrangian import Harmonic, Joints, LinearContacts, LinearSystem, Scene
 from lcpstep.kernels.function import Function
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.lcp.saddle import Saddle
 from lcpstep.lcp.sparse_rows import SparseRows
 from lcpstep.model import c_functions
-from lcpstep.stepping.steps import RESOLUTION
 
 Array = NDArray[np.float64]
 REST = 8 * RESOLUTION  # of the size of a velocity's terms: zero

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lcpstep.events.scan import GOLDEN
 from lcpstep.lcp.factor import Singular
 from lcpstep.stepping.sparse_updates import Lines
 
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 
 OPEN, STICK, FORWARDS, BACKWARDS = range(4)  # modes; the last two slide
 SIGN = np.array([0.0, 0.0, 1.0, -1.0])  # of the sliding velocity
-GOLDEN = 0.6180339887498949  # its multiples have fractions without a pattern
 MARGIN = 1e-3  # of the largest rate: what the shifts leave each contact at the start
 PIVOTS = 5  # granted per contact; up to 1.5 were seen to be needed
 ENTERS, LEAVES, RIGHT, LEFT, TURNS = range(5)  # what ends a mode, in the order of the table above; two limits

@@ -6,5 +6,5 @@ cdef class Control(Course):
     cdef public Py_ssize_t position, until, end, tried
     cdef public Py_ssize_t level, finest
     cdef public double start, stop, span, h_max, tolerance, enough, size_q, size_v, last, into
-    cdef public double apart_q, apart_v, far_q, far_v, rate, cut
+    cdef public double apart_q, apart_v, far_q, far_v, acceleration, cut
     cdef public bint happened, failed, hopeless, full

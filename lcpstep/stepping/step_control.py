@@ -28,13 +28,22 @@ from lcpstep.arrays import indices
 from lcpstep.kernels.course import AHEAD, ARRIVED, Course
 from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.record import Record
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.pointers import abs, inf, max, min
-from lcpstep.stepping.adaptive import LEVELS, NOISE, PAUSED, PLENTY, REACHED, TOO_SMALL, WANTED, sizes
-from lcpstep.stepping.steps import RESOLUTION
+from lcpstep.stepping.adaptive import (
+    LEAST_SHARE,
+    LEVELS,
+    NOISE,
+    PAUSED,
+    PLENTY,
+    REACHED,
+    TOO_SMALL,
+    WANTED,
+    sizes,
+)
 
 ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
 ROWS = 8  # that a step may keep besides the times asked for
-LEAST_SHARE = 1e-3  # of the tolerance, in steps with events
 LATE = 2.0 * RESOLUTION  # of a time: no shorter step shows less than what that makes of a motion
 FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
 JUMPS = 16  # steps in a row that may hold one each: more of them have errors that no step is short enough for
@@ -61,7 +70,7 @@ class Control(Course):
 
     apart_q, apart_v     errors of positions and velocities
     far_q, far_v         sizes of those that it led to
-    rate                 by which velocities have changed over it [m/s^2], where that is known
+    acceleration         by which velocities have changed over it [m/s^2], where that is known
     happened             whether there was an event, or what counts as one
     failed               whether a run could not be taken
     hopeless             nor could a shorter one go further
@@ -147,7 +156,7 @@ class Control(Course):
 
     def begin_attempt(self) -> None:
         """Nothing is known of it yet."""
-        self.apart_q = self.apart_v = self.far_q = self.far_v = self.rate = 0.0
+        self.apart_q = self.apart_v = self.far_q = self.far_v = self.acceleration = 0.0
         self.happened = self.failed = self.hopeless = self.full = False
         self.cut = inf
 
@@ -192,7 +201,7 @@ class Control(Course):
         size_q, size_v = max(self.size_q, self.far_q), max(self.size_v, self.far_v)
         noise = min(NOISE, LEAST_SHARE * self.tolerance)
         late = LATE * abs(self.now())
-        wrong_q, wrong_v = self.apart_q - late * self.far_v, self.apart_v - late * self.rate
+        wrong_q, wrong_v = self.apart_q - late * self.far_v, self.apart_v - late * self.acceleration
         error = max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v)) - noise
         share = (min(self.cut, h) - self.into) / self.span
         jumps = self.position < self.until and FLAT * error > self.last and self.jumped < JUMPS

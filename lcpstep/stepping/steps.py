@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.errors import LcpStepError
+from lcpstep.kernels.roundings import RESOLUTION
 
-RESOLUTION = 2.0**-52
 WHOLE = 1e-9  # of a step: a span this close to a whole number of steps is taken as one
 LATE = 1e-9  # of a step: what rounding may take from the end of the last one
 RESTING = 1e-13  # of the size of the scene: a gap this small is closed

@@ -42,6 +42,7 @@ def uncompiled(monkeypatch):
         monkeypatch.setattr(moreau_run, "Plan", plain.moving.Plan)
         monkeypatch.setattr(moreau_run, "places", plain.extent.places)
         monkeypatch.setattr(moreau_run, "own_places", plain.extent.own_places)
+        monkeypatch.setattr(moreau_run, "ways", plain.extent.ways)
         monkeypatch.setattr(moreau_run, "is_stiff", plain.extent.is_stiff)
         monkeypatch.setattr(moreau_run, "constant_rows", plain.responses.constant_rows)
 

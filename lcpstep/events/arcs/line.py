@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
 from lcpstep.events.flight.oscillator import Oscillator, oscillator
+from lcpstep.kernels.roundings import NOISE
 
 Array = NDArray[np.float64]
-NOTHING = 64 * 2.0**-52  # of the terms of a sum: it is zero to rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +103,7 @@ def _along(
 
 def _nothing(terms: Any) -> bool:
     """Whether a sum is zero to rounding."""
-    return abs(float(np.sum(terms))) <= NOTHING * float(np.sum(np.abs(terms)))
+    return abs(float(np.sum(terms))) <= NOISE * float(np.sum(np.abs(terms)))
 
 
 def _bounded(o: Oscillator) -> bool:

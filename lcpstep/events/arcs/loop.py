@@ -31,13 +31,12 @@ from lcpstep.events.arcs.motion import (
 )
 from lcpstep.events.codes import REVERSE, SLIP, STAYS_CLOSED, STICK_TANGENT
 from lcpstep.events.flight.contact import SLACK
-from lcpstep.kernels.clock import NOISE, RESOLUTION
+from lcpstep.events.rows.contacts import STILL
 from lcpstep.kernels.course import DUE, Events
 from lcpstep.kernels.quadratic import first_zero
+from lcpstep.kernels.roundings import NOISE, RESOLUTION
 from lcpstep.kernels.status import DONE
 from lcpstep.pointers import abs, inf, max, min
-
-STILL = 100.0  # tolerances: a sliding velocity this small at the start is zero
 
 
 class Course(Events):

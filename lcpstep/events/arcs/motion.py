@@ -20,7 +20,8 @@ import numpy as np
 
 from lcpstep.arrays import doubles
 from lcpstep.events.flight.oscillator import envelope, fundamental
-from lcpstep.kernels.clock import NOISE, Clock
+from lcpstep.kernels.clock import Clock
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.pointers import abs, after, inf
 
 

@@ -20,7 +20,7 @@ from lcpstep.events.rows.accelerations import accelerate_as_held
 from lcpstep.events.rows.contacts import hold_modes
 from lcpstep.events.rows.equations import acceleration_of, size_of_acceleration
 from lcpstep.events.rows.held import is_held
-from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.pointers import abs, max
 
 MOST = 4  # contacts at rest: of more not every way is tried

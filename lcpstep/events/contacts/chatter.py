@@ -40,7 +40,7 @@ from lcpstep.events.rows.contacts import (
 from lcpstep.events.rows.equations import acceleration_of, size_of, velocity_of
 from lcpstep.events.rows.held import constrain, is_held
 from lcpstep.events.rows.keep import put_on_account
-from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import abs, after, max, nan
 

@@ -16,7 +16,8 @@ from lcpstep.events.rows.equations import (
     size_of,
     velocity_of,
 )
-from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.dynamics import harmonic_terms
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import copy, largest
 from lcpstep.pointers import Doubles, abs, after, max, min
 
@@ -104,8 +105,7 @@ def load_terms(s: Rubbing, j: int) -> float:
     if s.model.linear:
         for k in range(n):
             size += abs(s.model.K[j * n + k] * s.q[k]) + abs(s.model.C[j * n + k] * s.v[k])
-        if not s.model.force.given:
-            size += abs(s.model.constant[j]) + abs(s.model.cosine[j]) + abs(s.model.sine[j])
+        size += harmonic_terms(s.model, j)
     return size
 
 

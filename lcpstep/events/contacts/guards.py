@@ -21,8 +21,8 @@ from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
 from lcpstep.events.rows.equations import list_gaps, measure_rates, size_of, velocity_of
 from lcpstep.events.rows.held import is_held
 from lcpstep.events.rows.on_joints import is_led
-from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.dop853 import STAGES
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import copy, largest
 from lcpstep.pointers import Doubles, abs, after, max, min
 

@@ -15,14 +15,14 @@ from math import pow, sqrt
 
 import cython
 
-from lcpstep.events.codes import OPEN
+from lcpstep.events.codes import LOW, OPEN
 from lcpstep.events.contacts.held import know_biases, know_rows
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.hybrid.roots import NONE
 from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
 from lcpstep.events.rows.equations import acceleration_of, list_gaps, size_of, velocity_of
-from lcpstep.kernels.clock import RESOLUTION
-from lcpstep.kernels.quadratic import first_zero
+from lcpstep.kernels.quadratic import first_zero, highest
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import largest
 from lcpstep.pointers import abs, after, inf, max, min, nan
 
@@ -41,8 +41,7 @@ OUTER, INNER = 0.17392742256872692, 0.32607257743127307
 REMAINDER = 331776.0 / (9.0 * 1625702400.0)
 LONGER = 3.0  # how much longer than under constant acceleration a hop may last
 SHORT = 0.02  # of the scan interval: what the quadrature of a hop resolves to rounding
-LOW = 1e-6  # of the positions: higher gaps are as well known by their difference
-FAINT = 1e-12  # the same where no corner is: of lower ones it tells no more than four digits
+FAINT = 1e-12  # as LOW, where no corner is: of lower ones it tells no more than four digits
 UNLIKE = 1e-6  # of the way that its speed at first would take a gap: one so far open has not landed
 STEADY = 1e-7  # of its terms: a gap velocity that changes by more at a corner does not do so by errors of integration
 
@@ -105,8 +104,7 @@ def is_low(s: Rubbing, c: int, h: float) -> bool:
     if h > SHORT * s.scan_length:
         return False
     low = LOW if h >= s.clock.high - s.clock.t0 else FAINT
-    highest = s.height[c] + h * (abs(s.rise[c]) + 0.5 * h * abs(s.bend[c]))
-    return highest <= low * largest(s.q, 0.0, s.n_q)
+    return highest(s.height[c], s.rise[c], s.bend[c], h) <= low * largest(s.q, 0.0, s.n_q)
 
 
 def hop_end(s: Rubbing, c: int, guess: float, longest: float) -> float:

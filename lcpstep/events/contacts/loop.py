@@ -35,6 +35,7 @@ from lcpstep.events.contacts.jamming import jam
 from lcpstep.events.contacts.loose import find_loose
 from lcpstep.events.contacts.modes import adopt_modes, decide, keep_mode, obey, undecided
 from lcpstep.events.contacts.state import Rubbing
+from lcpstep.events.contacts.step import FURTHER, LOOK_AHEAD
 from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
 from lcpstep.events.contacts.switching import look_at_guards, switch
 from lcpstep.events.rows.keep import keep, keep_event
@@ -42,9 +43,6 @@ from lcpstep.kernels.course import DUE, Events
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 from lcpstep.kernels.vectors import clear, copy, copy_indices
 from lcpstep.pointers import Doubles, after, min
-
-# Of the interval looked at: where forces that begin at zero are looked at, and how much further while they are zero
-LOOK_AHEAD, FURTHER = 1e-6, 10.0
 
 
 class Course(Events):

@@ -11,13 +11,13 @@ import cython
 
 from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.equations import force_noise, size_of_loads
-from lcpstep.events.contacts.held import know_biases
+from lcpstep.events.contacts.held import know_biases, know_rows
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.rows.contacts import rubs
 from lcpstep.events.rows.equations import acceleration_of, measure_biases, size_of_acceleration
 from lcpstep.events.rows.held import DRIFT, is_held
-from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.dop853 import STAGES
+from lcpstep.kernels.roundings import NOISE, RESOLUTION
 from lcpstep.pointers import Doubles, abs, after, max, min
 
 NEAR = 1e-3  # of the way to either end of where it is sought: how well a time is known
@@ -96,6 +96,11 @@ def straying(s: Rubbing, a: Doubles, level: float) -> int:
         if mode != OPEN and (strays(s, i, a, least) or (mode != SLIDES and strays(s, i + s.n_c, a, least))):
             return c
     return -1
+
+
+def straying_seen(s: Rubbing, t: float, level: float) -> int:
+    """The same at the state `seen` of time t; -1 as well where that is not finite."""
+    return straying(s, after(s.dy, s.n_q), level) if know_rows(s, t, s.seen, s.dy) else -1
 
 
 def strays(s: Rubbing, i: int, a: Doubles, least: float) -> bool:

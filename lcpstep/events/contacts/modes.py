@@ -32,9 +32,10 @@ from lcpstep.events.rows.problem import (
     solve_forces,
     stand_without_friction,
 )
-from lcpstep.kernels.clock import LEAST, NOISE
+from lcpstep.kernels.clock import LEAST
 from lcpstep.kernels.coulomb import motion_of
 from lcpstep.kernels.repose import is_loaded, moves, stay
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.status import DONE, PAINLEVE_INCONSISTENT, PAINLEVE_INDETERMINATE
 from lcpstep.pointers import abs, max
 

@@ -12,8 +12,8 @@ from lcpstep.events.codes import SLIDES
 from lcpstep.events.contacts.guards import UNKNOWN, look, look_at_stage
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.rows.contacts import still
-from lcpstep.kernels.clock import NOISE, RESOLUTION
 from lcpstep.kernels.dop853 import STAGES
+from lcpstep.kernels.roundings import NOISE, RESOLUTION
 from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import abs, after, min
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.held import know_rows, right_hand_side
-from lcpstep.events.contacts.loose import straying
+from lcpstep.events.contacts.held import right_hand_side
+from lcpstep.events.contacts.loose import straying_seen
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.step import step
 from lcpstep.events.rows.held import size_of_pushes
@@ -34,6 +34,4 @@ class Smooth(Rubbing):
     def straying_at(self, place: float, h: float, level: float) -> int:
         """The first contact of which a row has left its rest at that fraction of the step, or -1: by dense output."""
         self.at(place, self.seen)
-        if not know_rows(self, self.clock.t0 + place * h, self.seen, self.dy):
-            return -1
-        return straying(self, after(self.dy, self.n_q), level)
+        return straying_seen(self, self.clock.t0 + place * h, level)

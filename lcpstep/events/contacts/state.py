@@ -18,7 +18,7 @@ from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.dop853 import ALL
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import NOT_FINITE
-from lcpstep.pointers import after, indices_after, max
+from lcpstep.pointers import Doubles, Indices, after, indices_after, max
 
 # Of the interval looked at: stretches of motion this short take no time, nor do roundings of it
 NO_TIME = 2.0**-50
@@ -105,53 +105,60 @@ class Rubbing(RungeKutta):
         self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
         self.weights = after(self.nodes, self.n_nodes)
         self.table = np.zeros(4 * n + (4 + ALL) * r + 1 + (n + r) ** 2 + 9 * n_c)
-        shared = self.rows
-        shared.q, shared.v, shared.rough = self.y, after(self.y, n), self.coefficients.rough
-        shared.mu, shared.mu_s = self.coefficients.sliding, self.coefficients.sticking
-        self.q, self.v, self.mu, self.mu_s = shared.q, shared.v, shared.mu, shared.mu_s
-        self.a_free, self.force, self.a, self.dv = shared.a_free, shared.force, shared.a, shared.dv
-        self.R, self.MR, self.W = shared.R, shared.MR, shared.D
-        self.rate, self.bias, self.shifted_rate = shared.rate, shared.bias, shared.near
-        self.change, self.multiplier, self.effect = shared.change, shared.multiplier, shared.effect
-        self.gap, self.velocity, self.terms = shared.gap, shared.velocity, shared.terms
-        self.impulse, self.instant, self.before = shared.impulse, shared.instant, shared.before
-        self.direction, self.mode, self.was_mode = shared.direction, shared.mode, shared.was_mode
-        self.tried, self.loaded = shared.tried, shared.loaded
-        self.may_stick, self.touches, self.parting = shared.may_stick, shared.touches, shared.parting
-        self.dy = doubles(self.table)
-        self.seen = after(self.dy, 2 * n)
-        self.paces, self.paced = after(self.seen, 2 * n), 0
-        self.counted = after(self.paces, r + 1)
-        self.total = after(self.counted, r)
-        self.loads = after(self.total, r)
-        self.doubt = after(self.loads, ALL * r)
-        self.effects = after(self.doubt, r)
-        self.given = np.array(tangential, dtype=float)
-        self.tangential = doubles(self.given)
-        self.new_direction = after(self.effects, (n + r) * (n + r))
-        self.slip = after(self.new_direction, n_c)
-        self.lands = after(self.slip, n_c)
-        self.height = after(self.lands, n_c)
-        self.rise = after(self.height, n_c)
-        self.bend = after(self.rise, n_c)
-        self.speed = after(self.bend, n_c)
-        self.jumped = after(self.speed, n_c)
-        self.stray, self.loose = after(self.jumped, n_c), 0
+        self.marks, self.arms = np.zeros(5 * n_c, dtype=np.intp), np.zeros(GUARDS * n_c, dtype=np.intp)
+        self.looks, self.given = np.zeros(GUARDS * n_c * (SAMPLES + 2)), np.array(tangential, dtype=float)
+        self.tangential, self.armed = doubles(self.given), indices(self.arms)
+        self.share_rows()
+        self.place_numbers(doubles(self.table))
+        self.place_guards(doubles(self.looks))
+        self.place_marks(indices(self.marks))
+        self.paced, self.loose = 0, 0
         self.bracket, self.hopping = self.scan.bracket, False
         self.watch, self.watched, self.guards = None, False, ENTERED
         self.flying = False
-        self.marks = np.zeros(5 * n_c, dtype=np.intp)
-        self.new_mode = indices(self.marks)
-        self.new_loaded = indices_after(self.new_mode, n_c)
-        self.hops = indices_after(self.new_loaded, n_c)
-        self.carried = indices_after(self.hops, n_c)
-        self.leader = indices_after(self.carried, n_c)
-        self.looks = np.zeros(GUARDS * n_c * (SAMPLES + 2))
-        self.value = doubles(self.looks)
-        self.band = after(self.value, GUARDS * n_c)
-        self.samples = after(self.band, GUARDS * n_c)
-        self.arms = np.zeros(GUARDS * n_c, dtype=np.intp)
-        self.armed = indices(self.arms)
+
+    def share_rows(self) -> None:
+        """What the rows know of the motion, and the motion of its rows."""
+        self.rows.q, self.rows.v, self.rows.rough = self.y, after(self.y, self.n_q), self.coefficients.rough
+        self.rows.mu, self.rows.mu_s = self.coefficients.sliding, self.coefficients.sticking
+        self.q, self.v, self.mu, self.mu_s = self.rows.q, self.rows.v, self.rows.mu, self.rows.mu_s
+        self.a_free, self.force, self.a, self.dv = (
+            self.rows.a_free,
+            self.rows.force,
+            self.rows.a,
+            self.rows.dv,
+        )
+        self.R, self.MR, self.W = self.rows.R, self.rows.MR, self.rows.D
+        self.rate, self.bias, self.shifted_rate = self.rows.rate, self.rows.bias, self.rows.near
+        self.change, self.multiplier, self.effect = self.rows.change, self.rows.multiplier, self.rows.effect
+        self.gap, self.velocity, self.terms = self.rows.gap, self.rows.velocity, self.rows.terms
+        self.impulse, self.instant, self.before = self.rows.impulse, self.rows.instant, self.rows.before
+        self.direction, self.mode, self.was_mode = self.rows.direction, self.rows.mode, self.rows.was_mode
+        self.tried, self.loaded = self.rows.tried, self.rows.loaded
+        self.may_stick, self.touches, self.parting = self.rows.may_stick, self.rows.touches, self.rows.parting
+
+    def place_numbers(self, x: Doubles) -> None:
+        """Numbers of states, rows and contacts, from x on."""
+        n, r, n_c = self.n_q, self.n_r, self.n_c
+        self.dy, self.seen, self.paces = x, after(x, 2 * n), after(x, 4 * n)
+        x = after(self.paces, r + 1)
+        self.counted, self.total, self.loads = x, after(x, r), after(x, 2 * r)
+        self.doubt, self.effects = after(self.loads, ALL * r), after(self.loads, (ALL + 1) * r)
+        x = after(self.effects, (n + r) * (n + r))
+        self.new_direction, self.slip, self.lands = x, after(x, n_c), after(x, 2 * n_c)
+        self.height, self.rise, self.bend = after(x, 3 * n_c), after(x, 4 * n_c), after(x, 5 * n_c)
+        self.speed, self.jumped, self.stray = after(x, 6 * n_c), after(x, 7 * n_c), after(x, 8 * n_c)
+
+    def place_guards(self, x: Doubles) -> None:
+        """Numbers of guards, from x on."""
+        n = GUARDS * self.n_c
+        self.value, self.band, self.samples = x, after(x, n), after(x, 2 * n)
+
+    def place_marks(self, x: Indices) -> None:
+        """Whole numbers per contact, from x on."""
+        n = self.n_c
+        self.new_mode, self.new_loaded, self.hops = x, indices_after(x, n), indices_after(x, 2 * n)
+        self.carried, self.leader = indices_after(x, 3 * n), indices_after(x, 4 * n)
 
     def proceed(self) -> int:
         """Go on up to the first event, no further than a step; a status. Every way to step has its own."""

@@ -21,8 +21,8 @@ from lcpstep.events.rows.keep import keep
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT
 from lcpstep.pointers import min
 
-# Of a step: where the forces after a release, or a slip, are looked at, how much further while they are zero, and how
-# far at most
+# Of a step, or of the interval looked at: where the forces after a release, or a slip, or that begin at zero are
+# looked at, how much further while they are zero, and how far at most
 LOOK_AHEAD, FURTHER, FARTHEST = 1e-6, 10.0, 1e-2
 LONGEST = 4.0  # times as long as the shortest hop, were its acceleration constant
 

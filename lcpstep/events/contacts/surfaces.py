@@ -10,8 +10,8 @@ from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
 from lcpstep.events.rows.held import contradiction, parted
-from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.dynamics import gap_rates, gaps
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import clear, largest, product
 from lcpstep.pointers import Doubles, abs, after, max, min
 

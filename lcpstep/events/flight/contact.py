@@ -13,11 +13,12 @@ stability analysis of impacting systems with complete chattering, Nonlinear Dyna
 
 from __future__ import annotations
 
-RESOLUTION = 2.0**-52
+from lcpstep.kernels.roundings import NOISE, RESOLUTION
+
 FREE, CLOSED = 0.0, 1.0  # modes
 SLACK = 4  # rows and events that one round of the loop may need
 JUST_RELEASED = 1e-300  # a gap acceleration that is zero, on its way up
-ON_THE_SURFACE = 64 * RESOLUTION  # a gap this small, relative to the state, is closed
+ON_THE_SURFACE = NOISE  # a gap this small, relative to the state, is closed
 UNSEEN = 4 * RESOLUTION  # of the time: a hop this short is none
 NONE = -1.0  # in place of a root's time
 STRIDE = 3.0  # scan intervals in one stride, where the obstacle is far

@@ -15,9 +15,8 @@ from lcpstep.events.flight.contact import CLOSED, FREE, NONE, ON_THE_SURFACE, UN
 from lcpstep.events.flight.keep import keep_event
 from lcpstep.events.flight.motion import Flight, free, leave_from, on_obstacle
 from lcpstep.events.flight.rest import alpha_at
+from lcpstep.kernels.sudden import JUMP
 from lcpstep.pointers import abs, max, min
-
-JUMP = 1e-9  # of the velocities at hand: an obstacle's velocity that jumps by less does so by rounding
 
 
 def log(s: Flight, t: float, kind: int, before: float, after: float, p: float) -> None:

@@ -16,13 +16,14 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.flight.contact import NONE, RESOLUTION
+from lcpstep.events.codes import LOW
+from lcpstep.events.flight.contact import NONE
 from lcpstep.events.flight.motion import Flight, free
-from lcpstep.kernels.quadratic import first_zero
+from lcpstep.kernels.quadratic import first_zero, highest
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.pointers import abs, min
 
 SHORT = 0.02  # of the scan interval: the cubic resolves the acceleration to rounding
-LOW = 1e-6  # of the positions at hand: higher gaps are as well known by their difference
 SETTLED = 1e-7  # change of the length of the longest hop that needs no further pass
 PASSES = 8  # of the search for the end of a short hop; two are the rule
 LONGER = 3.0  # how much longer than its guess a short hop may last
@@ -48,7 +49,7 @@ def is_low(s: Flight, a: float) -> bool:
     if a != 0.0 or not s.on_surface:
         return False
     h = stretch(s)
-    return s.g0 + h * (abs(s.u0) + 0.5 * h * abs(s.alpha0)) <= LOW * s.size
+    return highest(s.g0, s.u0, s.alpha0, h) <= LOW * s.size
 
 
 def fit(s: Flight, h: float) -> tuple[float, float, float]:

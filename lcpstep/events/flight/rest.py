@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.flight.contact import NONE, RESOLUTION
+from lcpstep.events.flight.contact import NONE
 from lcpstep.events.flight.motion import Flight, on_obstacle
 from lcpstep.gauss import gauss
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.pointers import abs, inf, min
 
 PROBES = 4  # samples of alpha per interval while the contact is closed

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.flight.contact import NONE, RESOLUTION
+from lcpstep.events.flight.contact import NONE
 from lcpstep.events.flight.motion import Flight, free
 from lcpstep.kernels.bracket import Bracket
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.pointers import abs
 
 STRAIGHT = 1e-3  # of a gap root: the last step, relative to its bracket, and the change of the slope over it

@@ -15,8 +15,8 @@ import numpy as np
 
 from lcpstep.arrays import doubles, indices
 from lcpstep.events.hybrid.kinds import DIFFERENCE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING
-from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.function import Functions
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import Doubles, abs, after, inf, max
 

@@ -11,7 +11,7 @@ import cython
 from lcpstep.events.hybrid.field import guard
 from lcpstep.events.hybrid.roots import DEGREE, NONE, SAMPLES, convert, first_rise, taylor
 from lcpstep.events.hybrid.state import Motion
-from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import finite, largest
 from lcpstep.pointers import abs, after, max, min, nan
 

@@ -13,8 +13,8 @@ from lcpstep.events.hybrid.field import approaches, band_and_rate, guard, projec
 from lcpstep.events.hybrid.kinds import ARRIVE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING
 from lcpstep.events.hybrid.locate import UNKNOWN, find, locate, turns_back
 from lcpstep.events.hybrid.state import Motion
-from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.course import AHEAD, ARRIVED, DUE, Course
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import (
     BUFFER_FULL,
     DONE,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian.hybrid import HybridScene
-from lcpstep.events.hybrid.layout import SWITCH_LEAD
+from lcpstep.events.hybrid.kinds import SWITCH_LEAD
 from lcpstep.events.hybrid.loop import Switching
 from lcpstep.events.hybrid.run import prepared
 from lcpstep.kernels.status import BUFFER_FULL

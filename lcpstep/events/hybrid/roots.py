@@ -17,7 +17,7 @@ import numpy as np
 
 from lcpstep.arrays import doubles
 from lcpstep.kernels.bracket import Bracket
-from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import Doubles, abs, after, max
 

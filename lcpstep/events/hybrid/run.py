@@ -11,7 +11,7 @@ from lagrangian.hybrid import HybridScene
 from lcpstep.culprits import hybrid_culprit
 from lcpstep.errors import LcpStepError
 from lcpstep.events.hybrid.field import Machine
-from lcpstep.events.hybrid.layout import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME
+from lcpstep.events.hybrid.kinds import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME
 from lcpstep.events.hybrid.loop import Switching
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.state import Motion

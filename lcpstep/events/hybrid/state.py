@@ -9,9 +9,9 @@ import numpy as np
 
 from lcpstep.arrays import doubles, indices
 from lcpstep.events.hybrid.field import Machine, field, guard
-from lcpstep.events.hybrid.layout import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME
+from lcpstep.events.hybrid.kinds import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME
 from lcpstep.events.hybrid.roots import SAMPLES, Scan
-from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.vectors import copy, finite
 from lcpstep.pointers import Doubles, abs, after, inf

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lagrangian.hybrid import HybridScene
-from lcpstep.answer import Answer, asked
-from lcpstep.events.hybrid.layout import SWITCH_LEAD
+from lcpstep.answer import Answer, asked, require_kept
+from lcpstep.events.hybrid.kinds import SWITCH_LEAD
 from lcpstep.trajectory import Counts, Status
 
 Array = NDArray[np.float64]
@@ -80,8 +80,7 @@ class HybridTrajectory(Answer):
         times, row = self._rows(t)
         s = self.pieces
         if len(s.dense) == 0:
-            if not np.all(np.isin(times, s.t)):
-                raise ValueError("t: states between the kept ones are not known; keep=1 keeps every step")
+            require_kept(times, s.t)
             return s.x[row[0]] if np.ndim(t) == 0 else s.x[row]
         length = np.where(s.h[row] > 0.0, s.h[row], np.inf)
         with np.errstate(invalid="ignore"):

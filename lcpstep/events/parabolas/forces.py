@@ -19,8 +19,8 @@ from lcpstep.events.rows.held import DRIFT, balance, constrain, contradiction, h
 from lcpstep.events.rows.loads import unload
 from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
 from lcpstep.events.rows.problem import fill
-from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import solve_contacts
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.status import DONE, JOINTS_FAILED
 from lcpstep.kernels.vectors import add, clear, copy, largest, product
 from lcpstep.pointers import abs, after

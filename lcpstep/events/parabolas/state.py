@@ -11,8 +11,8 @@ from lcpstep.arrays import doubles
 from lcpstep.events.rows.chatter import find_stop
 from lcpstep.events.rows.contacts import Contacts, add_impulse, count_impulses, hold_modes
 from lcpstep.events.rows.equations import size_of
-from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.together import gap_rounding
 from lcpstep.kernels.vectors import add, copy
 from lcpstep.pointers import abs, after, inf, max

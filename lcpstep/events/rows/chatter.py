@@ -28,8 +28,8 @@ from lcpstep.events.rows.contacts import (
 )
 from lcpstep.events.rows.equations import other
 from lcpstep.events.rows.held import constrain, solve_held
-from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.quadratic import accumulation, first_zero
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import clear, copy, copy_indices, largest
 from lcpstep.pointers import abs, max, min
 

@@ -21,13 +21,13 @@ from lcpstep.events.rows.held import constrain, hold, hold_joints, is_held
 from lcpstep.events.rows.loads import list_by_row
 from lcpstep.events.rows.on_joints import can_bear
 from lcpstep.events.rows.state import Rows
-from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import ContactProblem
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.together import gap_rounding
 from lcpstep.kernels.vectors import add, product, size_of_product
 from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
 
-STILL = 100.0  # tolerances: a sliding velocity this small at an event is zero
+STILL = 100.0  # tolerances: a sliding velocity this small at the start, or at an event, is zero
 
 
 class Contacts(Rows):

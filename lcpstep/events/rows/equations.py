@@ -17,11 +17,11 @@ from lcpstep.kernels.biases import bias
 from lcpstep.kernels.dynamics import gap_rates, gaps, total_force
 from lcpstep.kernels.linear import uncouple_two
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.sudden import JUMP
 from lcpstep.kernels.vectors import copy, filled, product, product_at
 from lcpstep.pointers import Doubles, abs, after, min
 
-JUMPS = 1e-9  # of velocities: a rate of a gap that changes by less at a corner does so by rounding
-BENDS = 8.0  # times what it changes by just beside the corner: neither is that a jump
+BENDS = 8.0  # times what the rate of a gap changes by just beside a corner: that is no jump
 BITS = 62  # of a whole number that kernels count by, its sign left aside
 
 
@@ -58,7 +58,7 @@ def rates_on_side(s: Rows, model: Model, first: int, t: float, q: Doubles, v: Do
     gap_rates(model, t, q, v, R, rate)
     for i in range(model.n_c if side != t else 0):
         jump, size = abs(s.near[i] - rate[i]), abs(s.near[i]) + abs(rate[i])
-        if jump > JUMPS * size + BENDS * abs(s.further[i] - s.near[i]):
+        if jump > JUMP * size + BENDS * abs(s.further[i] - s.near[i]):
             rate[i] = 2.0 * s.near[i] - s.further[i]
 
 

@@ -17,8 +17,8 @@ from lcpstep.events.rows.equations import acceleration_of, other, size_of, size_
 from lcpstep.events.rows.on_joints import leave_joints, leave_joints_again, put_on_joints
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.acceleration import inverse_mass
-from lcpstep.kernels.clock import RESOLUTION
 from lcpstep.kernels.linear import solve_triangles
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import add, clear, copy, largest, product
 from lcpstep.pointers import Doubles, abs, after, inf, max
 

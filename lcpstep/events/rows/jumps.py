@@ -10,7 +10,6 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.rows.equations import (
-    JUMPS,
     least_gap,
     least_speed,
     list_gaps,
@@ -21,7 +20,7 @@ from lcpstep.events.rows.equations import (
 from lcpstep.events.rows.state import Rows
 from lcpstep.kernels.clock import NUDGE
 from lcpstep.kernels.rungekutta import RungeKutta
-from lcpstep.kernels.sudden import MORE, SUDDEN, coarseness
+from lcpstep.kernels.sudden import JUMP, MORE, SUDDEN, coarseness
 from lcpstep.kernels.vectors import add
 from lcpstep.pointers import Doubles, abs, after, max
 
@@ -73,7 +72,7 @@ def open_at(s: Rows, t: float, motion: RungeKutta) -> int:
     """The first row at rest whose gap is open, or the other way, by more than errors of the step just made; or -1."""
     list_gaps(s, t, motion.y_new, s.near)
     for i in range(s.n_j + s.n_c):
-        if s.rests[i] == 1 and abs(s.near[i]) > max(TOLERANCES * least_gap(s, i, motion.y_new), s.slack):
+        if s.rests[i] == 1 and abs(s.near[i]) > max(TOLERANCES * least_gap(s, i, motion.y_new), s.gap_drift):
             return i
     return -1
 
@@ -96,7 +95,7 @@ def find_way(s: Rows, motion: RungeKutta, i: int, h: float) -> bool:
             high = tau
         else:
             low = tau
-    s.slack = max(s.slack, MORE * way)
+    s.gap_drift = max(s.gap_drift, MORE * way)
     motion.step(s.t0, h)
     motion.complete(s.t0, h)
     return False
@@ -121,7 +120,7 @@ def unseen(s: Rows, i: int, v: Doubles) -> float:
 
 def error(s: Rows, i: int, v: Doubles) -> float:
     """Of the velocity of row i: its rounding, and some of the tolerance."""
-    return max(JUMPS * size_of(s, i, s.rate[i], v), TOLERANCES * least_speed(s, i, v))
+    return max(JUMP * size_of(s, i, s.rate[i], v), TOLERANCES * least_speed(s, i, v))
 
 
 def velocity(s: Rows, i: int, t: float, y: Doubles) -> float:

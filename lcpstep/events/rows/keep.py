@@ -16,7 +16,7 @@ from lcpstep.events.codes import (
     STICKS,
 )
 from lcpstep.events.rows.contacts import Contacts, add_impulse, of_tangent, rubs, sliding
-from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import add
 from lcpstep.pointers import Doubles, abs, after, max
 

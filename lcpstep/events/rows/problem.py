@@ -12,8 +12,8 @@ from lcpstep.events.codes import OPEN
 from lcpstep.events.rows.contacts import Contacts, rubs
 from lcpstep.events.rows.equations import size_of_acceleration
 from lcpstep.events.rows.loads import unload
-from lcpstep.kernels.clock import NOISE
 from lcpstep.kernels.coulomb import solve_contacts
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import clear, largest
 from lcpstep.pointers import Indices, abs, after
 

@@ -8,7 +8,7 @@ cdef class Rows(Clock):
     cdef readonly double rtol, atol
     cdef public double far, fast, longest
     cdef Sudden sudden
-    cdef double slack
+    cdef double gap_drift
     cdef Doubles a_free, force, work, shifted, M, R, MR, D, G, rate, bias, near, further
     cdef Doubles held, change, share, doubt, L, bias_on, R_on, MR_on, D_on, idle
     cdef Indices row, either, rests, reach, moved

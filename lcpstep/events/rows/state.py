@@ -23,7 +23,7 @@ class Rows(Clock):
     far, fast, longest        of the motion all positions, and velocities, in the metric of M, and the largest
                               coordinate, each at its largest, roughly: absolute tolerances are no more than rtol of
                               them; infinite where these are to hold as given
-    sudden, slack             of velocities that jump; gap of a row at rest that a step may leave, as steps have shown
+    sudden, gap_drift         of velocities that jump; gap of a row at rest that a step may leave, as steps have shown
     a_free, force : (n_q,)    acceleration M^-1 f without contacts and joints, f
     M                         factor of the mass matrix, where that changes
     R, MR : (n_r, n_q)        rows, and rows M^-1 R^T
@@ -71,7 +71,7 @@ class Rows(Clock):
         self.known = False
         self.rtol, self.atol = tolerances
         self.far = self.fast = self.longest = inf
-        self.sudden, self.slack = Sudden(), 0.0
+        self.sudden, self.gap_drift = Sudden(), 0.0
         self.row_numbers = np.zeros(4 * n + n * n + 5 * r * n + 3 * r * r + 9 * r + n_j * n_j)
         self.a_free = doubles(self.row_numbers)
         self.force = after(self.a_free, n)

@@ -32,8 +32,7 @@ from lcpstep.events.hybrid.field import (
     reach,
     surface_gradient,
 )
-from lcpstep.events.hybrid.kinds import ARRIVE, NOT_SLIDING
-from lcpstep.events.hybrid.layout import SWITCH_LEAD
+from lcpstep.events.hybrid.kinds import ARRIVE, NOT_SLIDING, SWITCH_LEAD
 from lcpstep.kernels.flow import derivative_rates, follow
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import DONE, NOT_TRANSVERSAL

@@ -21,9 +21,10 @@ import numpy as np
 
 from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.linear import cancels, factorise, solve
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import add, clear, copy, largest, product, size_of_product
 from lcpstep.pointers import Doubles, Indices, abs, after, inf, max
-from lcpstep.stepping.steps import CONTRADICTION, RESOLUTION
+from lcpstep.stepping.steps import CONTRADICTION
 
 NEGLIGIBLE = 1e-7  # of a joint's mobility: a direction this stiff is another joint's, up to drift
 STALLED = 1e4  # of the slack: how much rounding in the gaps' own arithmetic may leave
@@ -32,8 +33,7 @@ NEARLY = 1e-3  # of a mobility: what joints leave of it with digits enough
 LOST = 3e-7  # of a row: what joints leave of it that has no digits for velocities
 GRAIN = 1e-15 / CONTRADICTION  # of the largest impulse: to which the others are known
 SMALLEST = 1e-290  # next to it numbers have all their digits
-REFINEMENTS = 20
-SWEEPS = 30
+REFINEMENTS, SWEEPS = 20, 30
 VECTORS = 6
 
 

@@ -1,7 +1,7 @@
 """Steps with located impacts, as kernels: pieces of smooth motion between events, each at its own time in a step.
 
 run, prepare, state      a run; what it starts from: constants of steps, the piece at hand and work space
-begin, loop, keep        the start, the loop over steps and pieces, which all orders share, and the states kept
+loop, keep               the start, and the loop over steps and pieces, which all orders share; the states kept
 quadratic_steps          order 2: `piece`, its motion (`smooth`) and its gaps (`lcpstep.kernels.quadratic`)
 polynomial_steps         order 4 and "exact": `polynomial`, `scan` for events, `polynomial_forces`
 event, impulses, chosen  an impact, the impulses of those that fire together, their problem (`refine`: to the last

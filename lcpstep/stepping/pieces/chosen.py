@@ -14,8 +14,9 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.pointers import Doubles, after, max
-from lcpstep.stepping.pieces.codes import INERTIA, ROUNDING
+from lcpstep.stepping.pieces.codes import INERTIA
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.refine import FORCES, NONE, solve_several
 from lcpstep.stepping.pieces.state import Plan, Work
@@ -44,7 +45,7 @@ def loosen(m: Model, plan: Plan, w: Work, n: int, forces: bool) -> None:
     """Let the chosen contacts close by what rounding may make of b: accelerations, or speeds."""
     for k in range(n):
         c = w.chosen[k]
-        w.b[k] += ROUNDING * (acceleration_terms(m, w, c) if forces else speed_terms(plan, w, c))
+        w.b[k] += NOISE * (acceleration_terms(m, w, c) if forces else speed_terms(plan, w, c))
         w.z[k] = 0.0
 
 

@@ -7,8 +7,6 @@ cdef enum: NOBODY = -1, CORNER = -2
 cdef enum: WHOLE = 0, REST = 1, INERTIA = 2
 
 cdef extern from *:
-    double EPS "0x1p-52"
     double SAME_TIME "0x1p-49"
     double LATE "1e-9"
-    double ROUNDING "0x1p-46"
     double STOPS "1e-9"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import BUFFER_FULL as BUFFER_FULL
 from lcpstep.stepping.steps import LATE as LATE
 from lcpstep.trajectory import Kind, Status
@@ -19,7 +20,5 @@ NOBODY, CORNER = -1, -2  # in the place of a contact: none; all whose velocity j
 WHOLE, REST = 0, 1  # places of the matrices for a whole step and for the rest of one;
 INERTIA = 2  # in their place: M alone
 
-EPS = 2.0**-52
-SAME_TIME = 8 * EPS  # relative: an impact as little after the end of a step belongs to it
-ROUNDING = 64 * EPS  # of sums of a few terms, relative to their size
+SAME_TIME = 8 * RESOLUTION  # relative: an impact as little after the end of a step belongs to it
 STOPS = 1e-9  # restitution: what rebounds no faster has no hops whose times could accumulate

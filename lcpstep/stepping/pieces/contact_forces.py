@@ -13,11 +13,12 @@ import cython
 
 from lcpstep.kernels.linear import solve_factored
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import add, clear, copy, product
+from lcpstep.kernels.roundings import NOISE
+from lcpstep.kernels.vectors import add, clear, copy
 from lcpstep.pointers import Doubles, abs, after, max, min
 from lcpstep.stepping.pieces.chosen import solve_chosen
-from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN, ROUNDING
-from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
+from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN
+from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms, velocity_of
 from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, factor_pressed, keep_closed
 from lcpstep.stepping.pieces.smooth import answer_forces
 from lcpstep.stepping.pieces.state import Plan, Work
@@ -30,20 +31,19 @@ def hold(m: Model, plan: Plan, w: Work, place: int, t: float) -> bool:
     All that touch at rest are decided in one problem: to add them one by one could go on for ever.
     """
     n = w.n_q
-    copy(w.a, w.free, w.n_q)
+    copy(w.a, w.a_free, w.n_q)
     clear(w.p, w.n_c)
     n_k = choose_resting(w)
     if n_k == 0:
         return True
     clear(w.fall, w.n_c)
-    rest = w.end - w.sigma
     place = answered(plan, w, place)
     W = after(plan.WA, place * w.n_c * w.n_c) if place != INERTIA else w.W
     MG = after(plan.AG, place * w.n_c * w.n_q) if place != INERTIA else w.MG
     if not solve_chosen(m, plan, w, W, place, n_k, FORCES):
         return False
     for i in range(n):
-        w.a_try[i] = abs(w.free[i])
+        w.a_try[i] = abs(w.a_free[i])
     for k in range(n_k):
         c, force = w.chosen[k], w.z[k]
         w.p[c] = force
@@ -54,6 +54,13 @@ def hold(m: Model, plan: Plan, w: Work, place: int, t: float) -> bool:
     zero_rounding(plan, w)
     if plan.plain and n_k > 1 and keep_closed(w, W, MG, n_k):
         zero_rounding(plan, w)
+    open_or_close(m, plan, w, W, n_k, t)
+    return True
+
+
+def open_or_close(m: Model, plan: Plan, w: Work, W: Doubles, n_k: int, t: float) -> None:
+    """Of the chosen contacts those that need no force, and accelerate away, open; the others are closed from t on."""
+    rest = w.end - w.sigma
     for k in range(n_k):
         c, force = w.chosen[k], w.z[k]
         if force == 0.0:
@@ -69,7 +76,6 @@ def hold(m: Model, plan: Plan, w: Work, place: int, t: float) -> bool:
             count_turn(m, plan, w, c, 0.0, False)
         w.older[c], w.older_time[c] = force, t + 0.5 * rest
         w.force_now[c] = force
-    return True
 
 
 def answered(plan: Plan, w: Work, place: int) -> int:
@@ -113,7 +119,7 @@ def leaving(m: Model, plan: Plan, w: Work, W: Doubles, k: int, n_k: int, t: floa
         size += abs(W[c * w.n_c + d] * w.z[j])
     if w.status[c] == CLOSED and w.grounded[c] == LEFT:
         return max(alpha, 0.0)
-    if alpha <= ROUNDING * (size + abs(w.b[k])) or alpha <= ROUNDING * (size + acceleration_terms(m, w, c)):
+    if alpha <= NOISE * (size + abs(w.b[k])) or alpha <= NOISE * (size + acceleration_terms(m, w, c)):
         return 0.0
     return alpha if alpha > jerked(w, W, c) and tells(plan, w, c, alpha, t) else 0.0
 
@@ -130,7 +136,7 @@ def mobility(w: Work, W: Doubles, c: int, n_k: int) -> float:
     left = own
     for i in range(n):
         left -= W[c * w.n_c + w.held[i]] * w.change[i]
-    return left if left > ROUNDING * own else own
+    return left if left > NOISE * own else own
 
 
 def tells(plan: Plan, w: Work, c: int, alpha: float, t: float) -> bool:
@@ -138,7 +144,7 @@ def tells(plan: Plan, w: Work, c: int, alpha: float, t: float) -> bool:
 
     Bodies that go on together, touching along a curve, have a rounding of velocities across it whose square is left.
     """
-    return alpha * (plan.clock.t_end - t) > ROUNDING * speed_terms(plan, w, c)
+    return alpha * (plan.clock.t_end - t) > NOISE * speed_terms(plan, w, c)
 
 
 def pulls(m: Model, plan: Plan, w: Work, c: int, t: float) -> bool:
@@ -153,7 +159,7 @@ def pulls(m: Model, plan: Plan, w: Work, c: int, t: float) -> bool:
     for d in range(w.n_c):
         if w.status[d] == CLOSED:
             size += abs(w.W[c * w.n_c + d] * w.p[d])
-    return alpha > ROUNDING * (size + acceleration_terms(m, w, c)) and -w.p[c] > force_rounding(m, w, c)
+    return alpha > NOISE * (size + acceleration_terms(m, w, c)) and -w.p[c] > force_rounding(m, w, c)
 
 
 def force_rounding(m: Model, w: Work, c: int) -> float:
@@ -168,7 +174,7 @@ def force_rounding(m: Model, w: Work, c: int) -> float:
         for j in range(n_k):
             size += abs(w.W[d * w.n_c + w.held[j]] * w.p[w.held[j]])
         error += abs(w.change[k]) * size
-    return ROUNDING * error
+    return NOISE * error
 
 
 def jerked(w: Work, W: Doubles, c: int) -> float:
@@ -180,7 +186,7 @@ def jerked(w: Work, W: Doubles, c: int) -> float:
     for d in range(w.n_c):
         if d != c and w.status[d] == CLOSED:
             felt += abs(W[c * w.n_c + d])
-    return ROUNDING * min(felt, W[c * w.n_c + c]) * largest_connected(w, c) if felt > 0.0 else 0.0
+    return NOISE * min(felt, W[c * w.n_c + c]) * largest_connected(w, c) if felt > 0.0 else 0.0
 
 
 def largest_connected(w: Work, c: int) -> float:
@@ -208,9 +214,9 @@ def largest_connected(w: Work, c: int) -> float:
 def zero_rounding(plan: Plan, w: Work) -> None:
     """What is but rounding of the sums in w.a_try is zero: accelerations, and velocities that they made."""
     for i in range(w.n_q):
-        if abs(w.a[i]) <= ROUNDING * w.a_try[i]:
+        if abs(w.a[i]) <= NOISE * w.a_try[i]:
             w.a[i] = 0.0
-            if plan.plain and abs(w.v[i]) <= ROUNDING * w.a_try[i] * plan.h:
+            if plan.plain and abs(w.v[i]) <= NOISE * w.a_try[i] * plan.h:
                 w.v[i] = 0.0
 
 
@@ -225,7 +231,7 @@ def land(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
         if w.status[c] == CLOSED:
             w.chosen[n_k] = c
             w.z[n_k] = 0.5 * tau * w.force_now[c]
-            w.b[n_k] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+            w.b[n_k] = velocity_of(w, c)
             n_k += 1
     if n_k == 0:
         return True
@@ -243,8 +249,8 @@ def land(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
     for k in range(n_k):
         c = w.chosen[k]
         if w.p[c] == 0.0 and tau > 0.0:
-            u = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
-            if u > ROUNDING * speed_terms(plan, w, c):
+            u = velocity_of(w, c)
+            if u > NOISE * speed_terms(plan, w, c):
                 lost = 2.0 * u / (tau * mobility(w, W, c, n_k))
                 force = w.force_now[c]
                 share = force / (force + lost) if force > 0.0 else 0.0

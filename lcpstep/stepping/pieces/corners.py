@@ -16,13 +16,13 @@ import cython
 
 from lcpstep.kernels.dynamics import gap_rates, moves
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import copy, product
+from lcpstep.kernels.sudden import JUMP
+from lcpstep.kernels.vectors import copy, size_of_product
 from lcpstep.pointers import abs, max, min
 from lcpstep.stepping.pieces.codes import CLOSED, GROUND
+from lcpstep.stepping.pieces.magnitudes import velocity_of
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
-
-JUMP = 1e-9  # of the velocities at hand: a gap velocity that jumps by less does so by rounding
 
 
 def find_corners(plan: Plan, w: Work, t: float) -> tuple[float, float]:
@@ -49,10 +49,9 @@ def go_beyond(m: Model, w: Work, t: float) -> None:
     gap_rates(m, at, w.q, w.v, w.G, w.gap_t)
     gap_rates(m, at, w.q_try, w.v, w.G_try, w.gap_t_try)
     for c in range(w.n_c):
-        jump, size = w.gap_t_try[c] - w.gap_t[c], abs(w.gap_t[c])
+        jump, size = w.gap_t_try[c] - w.gap_t[c], abs(w.gap_t[c]) + size_of_product(w.G, w.v, c, w.n_q)
         for i in range(c * w.n_q, (c + 1) * w.n_q):
             jump += (w.G_try[i] - w.G[i]) * w.v[i - c * w.n_q]
-            size += abs(w.G[i] * w.v[i - c * w.n_q])
         some = some or abs(jump) > JUMP * size
     if some:
         copy(w.q, w.q_try, w.n_q)
@@ -65,11 +64,9 @@ def choose_jumping(m: Model, plan: Plan, w: Work, t: float) -> int:
     gap_rates(m, within(w, t), w.q, w.v, w.G, w.gap_t)
     n_s = 0
     for c in range(w.n_c):
-        before, later = w.rate[c], product(w.G, w.v, c, w.n_q) + w.gap_t[c]
-        size = abs(w.gap_t[c])
+        before, later = w.rate[c], velocity_of(w, c)
+        size = abs(w.gap_t[c]) + size_of_product(w.G, w.v, c, w.n_q)
         w.before[c] = before
-        for i in range(w.n_q):
-            size += abs(w.G[c * w.n_q + i] * w.v[i])
         if abs(later - before) > JUMP * (size + abs(before)):
             w.rate[c] = later
             near = plan.slack + 4.0 * w.margin * (abs(before) + abs(later))

@@ -5,24 +5,16 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.dynamics import gaps
-from lcpstep.kernels.linear import grow_factor, solve_factored
+from lcpstep.kernels.linear import grow_factor
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import add, product
+from lcpstep.kernels.roundings import NOISE
+from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles, abs, after, max
-from lcpstep.stepping.pieces.codes import (
-    CORNER,
-    FINISHED,
-    GROUND,
-    LCP_FAILED,
-    NOBODY,
-    NOT_FINITE,
-    OPEN,
-    ROUNDING,
-)
+from lcpstep.stepping.pieces.codes import CORNER, FINISHED, GROUND, LCP_FAILED, NOT_FINITE, OPEN
 from lcpstep.stepping.pieces.impulses import strike, zero_speeds
 from lcpstep.stepping.pieces.keep import keep
-from lcpstep.stepping.pieces.magnitudes import speed_terms
-from lcpstep.stepping.pieces.smooth import renew_forces, renew_mobility
+from lcpstep.stepping.pieces.magnitudes import speed_terms, velocity_of, with_terms
+from lcpstep.stepping.pieces.smooth import push_held, renew_forces, renew_mobility
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import count_turn, idle, stick
 
@@ -58,7 +50,7 @@ def touches(m: Model, plan: Plan, w: Work, c: int, t: float, slow: float) -> boo
 
     Or by no more than rounding.
     """
-    still = ROUNDING * speed_terms(plan, w, c)
+    still = NOISE * speed_terms(plan, w, c)
     if not w.rate[c] >= -still:
         return False
     w.gap[c], w.grounded[c] = 0.0, GROUND
@@ -90,7 +82,7 @@ def straighten(m: Model, w: Work, d: int) -> None:
     for c in range(w.n_c):
         if w.status[c] == OPEN and w.grounded[c] == 0:
             change = w.W[c * w.n_c + d] * error / w.W[d * w.n_c + d]
-            if abs(change) <= ROUNDING * abs(w.rate[c]):
+            if abs(change) <= NOISE * abs(w.rate[c]):
                 w.rate[c] += change
 
 
@@ -105,7 +97,7 @@ def straighten_all(m: Model, w: Work, n_s: int) -> None:
             worst = max(worst, abs(w.residual[k]))
             for i in range(w.n_q):
                 size = max(size, abs(m.G[d * w.n_q + i] * x[i]))
-        if worst > ROUNDING * size:
+        if worst > NOISE * size:
             put_right(w, x, n_s)
 
 
@@ -122,7 +114,7 @@ def straighten_struck(m: Model, w: Work, t: float, n_s: int) -> None:
         put_right(w, w.q, n_s)
     for k in range(n_s):
         d = w.chosen[k]
-        w.residual[k] = product(w.G, w.v, d, w.n_q) + w.gap_t[d] - w.rate[d]
+        w.residual[k] = velocity_of(w, d) - w.rate[d]
     put_right(w, w.v, n_s)
 
 
@@ -134,9 +126,7 @@ def put_right(w: Work, x: Doubles, n_s: int) -> None:
         if grow_factor(w.W, w.n_c, w.problem, w.n_c, w.held, w.doubt, n_k):
             w.change[n_k] = -w.residual[k]
             n_k += 1
-    solve_factored(w.problem, w.n_c, n_k, w.change)
-    for k in range(n_k):
-        add(x, w.change[k], after(w.MG, w.held[k] * w.n_q), w.n_q)
+    push_held(w, w.MG, w.n_c, n_k, x)
 
 
 def height(m: Model, w: Work, c: int) -> float:
@@ -152,26 +142,9 @@ def remeasure(m: Model, plan: Plan, w: Work) -> None:
     """
     for c in range(w.n_c):
         if w.status[c] == OPEN and w.grounded[c] == 0 and w.gap[c] > plan.slack:
-            g, u, place, speed = m.offset[c], 0.0, abs(m.offset[c]), 0.0
-            for i in range(w.first_coordinate[c], w.last_coordinate[c] + 1):
-                x, y = m.G[c * w.n_q + i] * w.q[i], m.G[c * w.n_q + i] * w.v[i]
-                g, u, place, speed = g + x, u + y, place + abs(x), speed + abs(y)
-            if g > plan.slack and abs(g - w.gap[c]) > ROUNDING * place:
+            g, place = with_terms(w, m.G, c, w.q, m.offset[c])
+            u, speed = with_terms(w, m.G, c, w.v, 0.0)
+            if g > plan.slack and abs(g - w.gap[c]) > NOISE * place:
                 w.gap[c] = g
-            if abs(u - w.rate[c]) > ROUNDING * speed:
+            if abs(u - w.rate[c]) > NOISE * speed:
                 w.rate[c] = u
-
-
-def struck_at_start(w: Work) -> int:
-    """The contact that comes nearer fastest of those that touch at the very start, where others rest; or NOBODY.
-
-    These take part in its impact: there was no time in which the forces could have parted them.
-    """
-    first = NOBODY
-    if w.closed_now == 0:
-        return first
-    for c in range(w.n_c):
-        touches = w.status[c] == OPEN and w.grounded[c] == GROUND and w.gap[c] == 0.0
-        if touches and w.rate[c] < 0.0 and (first == NOBODY or w.rate[c] < w.rate[first]):
-            first = c
-    return first

@@ -12,25 +12,24 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.roundings import NOISE, RESOLUTION
 from lcpstep.kernels.together import CROSSED, TOGETHER, gap_rounding, moment_untold, order_matters
-from lcpstep.kernels.vectors import clear, product
+from lcpstep.kernels.vectors import clear
 from lcpstep.pointers import Doubles, abs, inf, max, min
 from lcpstep.stepping.pieces.chosen import solve_chosen
 from lcpstep.stepping.pieces.codes import (
     ACCUMULATION,
     CLOSED,
     CORNER,
-    EPS,
     GROUND,
     IMPACT,
     INERTIA,
     LEFT,
     OPEN,
-    ROUNDING,
     STOPS,
 )
 from lcpstep.stepping.pieces.corners import choose_jumping
-from lcpstep.stepping.pieces.magnitudes import LEAST, speed_terms
+from lcpstep.stepping.pieces.magnitudes import LEAST, speed_terms, velocity_of
 from lcpstep.stepping.pieces.refine import NONE
 from lcpstep.stepping.pieces.sequences import (
     IN_A_ROW,
@@ -61,7 +60,7 @@ def strike(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     if n_s >= 0 or first == CORNER:
         return n_s
     for c in range(w.n_c):
-        w.rate[c], w.fall[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c], 0.0
+        w.rate[c], w.fall[c] = velocity_of(w, c), 0.0
     if w.rate[first] < 0.0:
         return answer(m, plan, w, first, t, True)
     touch(w, first)
@@ -166,7 +165,7 @@ def rounding_of_time(w: Work, t: float) -> float:
     """What time t is rounded by where an obstacle moves, by whose place bodies on it are known; else 0."""
     for c in range(w.n_c):
         if w.gap_t[c] != 0.0:
-            return 4.0 * EPS * abs(t)
+            return 4.0 * RESOLUTION * abs(t)
     return 0.0
 
 
@@ -226,7 +225,7 @@ def zero_speeds(w: Work, terms: Doubles) -> None:
     knows no impacts, such a velocity is none of rounding beside itself, and bodies at rest on each other part.
     """
     for i in range(w.n_q):
-        if abs(w.v[i]) <= ROUNDING * terms[i]:
+        if abs(w.v[i]) <= NOISE * terms[i]:
             w.v[i] = 0.0
 
 
@@ -239,7 +238,7 @@ def push(plan: Plan, w: Work, d: int, p: float) -> None:
             w.fall[c] = 0.0
             u = abs(w.rate[c])
             touches = u <= SMALL * abs(change) and w.gap[c] <= plan.slack
-            if touches and u <= ROUNDING * speed_terms(plan, w, c):
+            if touches and u <= NOISE * speed_terms(plan, w, c):
                 touch(w, c)
             elif w.grounded[c] == LEFT:
                 w.grounded[c], w.touching = GROUND, True
@@ -256,7 +255,7 @@ def after_impact(m: Model, plan: Plan, w: Work, c: int, p: float, t: float) -> N
         if p > 0.0:
             w.rate[c] = 0.0
             w.record.note(t, c, 0.0, 0.0, p, IMPACT)
-        elif w.rate[c] > ROUNDING * speed_terms(plan, w, c):
+        elif w.rate[c] > NOISE * speed_terms(plan, w, c):
             release(m, plan, w, c, t, w.rate[c])
         else:
             w.rate[c] = 0.0

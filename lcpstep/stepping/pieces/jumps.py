@@ -11,11 +11,10 @@ import cython
 
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.sudden import coarseness
+from lcpstep.kernels.sudden import JUMP, coarseness
 from lcpstep.kernels.vectors import add, product
 from lcpstep.pointers import abs, max, min
 from lcpstep.stepping.pieces.codes import CLOSED
-from lcpstep.stepping.pieces.corners import JUMP
 from lcpstep.stepping.pieces.loop import Steps
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
@@ -110,7 +109,7 @@ def size_of(plan: Plan, w: Work, i: int) -> float:
     """What it is made of in a step, signs left aside."""
     size = abs(w.gap_t_try[i])
     for j in range(w.n_q):
-        size += abs(w.G_try[i * w.n_q + j]) * (abs(w.v_try[j]) + plan.h * abs(w.free[j]))
+        size += abs(w.G_try[i * w.n_q + j]) * (abs(w.v_try[j]) + plan.h * abs(w.a_free[j]))
     return size
 
 

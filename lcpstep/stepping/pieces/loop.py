@@ -11,17 +11,19 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
+from lcpstep.kernels.dynamics import external_force
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import clear, copy, finite
+from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.vectors import clear, copy, finite, product, size_of_product
 from lcpstep.pointers import abs, inf, max
-from lcpstep.stepping.pieces.begin import begin_motion
 from lcpstep.stepping.pieces.carried import put_kept_back
 from lcpstep.stepping.pieces.codes import (
     AGAIN,
     BUFFER_FULL,
+    CLOSED,
     CORNER,
-    EPS,
     FINISHED,
+    GROUND,
     LATE,
     LCP_FAILED,
     NOBODY,
@@ -31,12 +33,16 @@ from lcpstep.stepping.pieces.codes import (
     TOO_MANY_EVENTS,
 )
 from lcpstep.stepping.pieces.corners import find_corners, go_beyond, obstacles_move
-from lcpstep.stepping.pieces.event import remeasure, struck_at_start
+from lcpstep.stepping.pieces.event import remeasure
 from lcpstep.stepping.pieces.glide import glide
 from lcpstep.stepping.pieces.impulses import zero_speeds
 from lcpstep.stepping.pieces.keep import keep, keep_now
+from lcpstep.stepping.pieces.magnitudes import acceleration_terms
+from lcpstep.stepping.pieces.scan import closing_now
 from lcpstep.stepping.pieces.settle import settle
+from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, respond
 from lcpstep.stepping.pieces.state import Plan, Work
+from lcpstep.stepping.pieces.times import within
 
 
 class Steps(Stepwise):
@@ -166,8 +172,8 @@ class Steps(Stepwise):
         self.end_interval(t)
         if self.w.fresh:
             self.w.fresh = False
-            if self.found == NOBODY:
-                self.found = struck_at_start(self.w)
+            if self.found == NOBODY:  # what rests takes part: there was no time for the forces to part them
+                self.found = closing_now(self.w) if self.w.closed_now > 0 else NOBODY
         return FINISHED
 
     def end_interval(self, t: float) -> None:
@@ -217,7 +223,7 @@ def end_step(plan: Plan, w: Work, t: float, stop: float) -> int:
 
     States asked for at rounding after it are the next step's, which an impact may begin; at the span's end none is.
     """
-    late = t + LATE * plan.h + 4.0 * EPS * abs(t)
+    late = t + LATE * plan.h + 4.0 * RESOLUTION * abs(t)
     keep_now(w, late if late >= stop else t)
     w.steps += 1
     w.under_way = False
@@ -255,3 +261,40 @@ def is_finite(w: Work) -> bool:
 def poses(w: Work) -> bool:
     """Whether the contact problem that has no solution is one of finite numbers."""
     return is_finite(w) and finite(w.W, w.n_c * w.n_c)
+
+
+def begin_motion(m: Model, plan: Plan, w: Work, t: float) -> int:
+    """Forces, gaps and status of the initial state, which is kept where states are."""
+    w.low, w.high = find_corners(plan, w, t)
+    w.margin = plan.margin
+    w.fresh = True
+    if plan.trapezoidal:
+        external_force(m, within(w, t), w.q, w.v, w.force)
+    elif not free_acceleration(m, w, within(w, t), w.q, w.v, w.a_free):
+        return NOT_FINITE
+    w.force_evaluations += 1
+    if plan.steady:
+        for i in range(w.n_q):
+            w.a_free[i] = product(plan.A_inverse, w.force, i, w.n_q)
+    measure(m, w, t)
+    if plan.constant:
+        respond(m, w)
+        for c in range(w.n_c):
+            w.alpha[c] = product(m.G, w.a_free, c, w.n_q)
+    if not plan.plain:
+        gap_bias(m, w, within(w, t), w.q, w.v)
+    for c in range(w.n_c):
+        if w.gap[c] <= plan.slack:
+            w.gap[c], w.grounded[c] = 0.0, GROUND
+            size = (
+                abs(w.gap_t[c]) + size_of_product(w.G, w.v, c, w.n_q) + plan.h * acceleration_terms(m, w, c)
+            )
+            # What its obstacle changes its velocity by in what time is rounded by, and moved off a corner
+            rounded = (plan.margin + 4.0 * RESOLUTION * abs(t)) * abs(w.bias[c])
+            if abs(w.rate[c]) <= 64 * RESOLUTION * size + rounded:
+                w.rate[c], w.status[c] = 0.0, CLOSED
+                w.closed_now += 1
+    if w.record.n_times == 0:
+        keep(w, t, 0.0)
+    keep_now(w, t)
+    return FINISHED

@@ -11,12 +11,12 @@ import cython
 from lcpstep.kernels.dynamics import gaps, moves, obstacle
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.together import gap_rounding
 from lcpstep.kernels.vectors import copy, distance, product
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.pieces.codes import (
     CLOSED,
-    EPS,
     FINISHED,
     LCP_FAILED,
     LEFT,
@@ -51,7 +51,7 @@ def begin_piece(m: Model, plan: Plan, w: Work, t: float) -> bool:
     place = accelerate(m, plan, w)
     w.made_with = place
     if n_c == 0:
-        copy(w.a, w.free, w.n_q)
+        copy(w.a, w.a_free, w.n_q)
         return True
     closed = w.closed_now > 0 or w.touching
     if w.unchanged and not closed:
@@ -62,7 +62,7 @@ def begin_piece(m: Model, plan: Plan, w: Work, t: float) -> bool:
     elif needs_bias(plan, w):
         gap_bias(m, w, within(w, t), w.q, w.v)
         for c in range(n_c):
-            w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
+            w.alpha[c] = product(w.G, w.a_free, c, w.n_q) + w.bias[c]
     if closed and not plan.constant and not renew_mobility(m, plan, w, t):
         return False
     if not hold(m, plan, w, place, t):
@@ -91,7 +91,7 @@ def flat_accelerations(m: Model, plan: Plan, w: Work, t: float) -> None:
     """
     if not plan.steady or moves(m):
         for c in range(w.n_c):
-            w.alpha[c] = product(m.G, w.free, c, w.n_q)
+            w.alpha[c] = product(m.G, w.a_free, c, w.n_q)
     if moves(m):
         obstacle(m, within(w, t), w.q, w.v)
         for c in range(w.n_c):
@@ -189,7 +189,7 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
         if tau + change <= 0.0:
             break
         tau += change
-        if abs(change) <= EPS * tau:
+        if abs(change) <= RESOLUTION * tau:
             return c, tau
     look(m, w, t, tau)
     if w.gap_try[c] > 0.0:
@@ -213,7 +213,7 @@ def look(m: Model, w: Work, t: float, tau: float) -> None:
 def between(m: Model, w: Work, c: int, t: float, low: float, high: float) -> float:
     """Where a gap that is open at `low` and negative at `high` closes between them: by bisection."""
     w.bracket.begin(low, high, True, 0.5 * (low + high))
-    while w.bracket.seek(EPS * w.bracket.b):
+    while w.bracket.seek(RESOLUTION * w.bracket.b):
         look(m, w, t, w.bracket.x)
         w.bracket.take(1.0 if w.gap_try[c] > 0.0 else -1.0, 0.0)  # the first zero, where rounding makes many
     return w.bracket.b

@@ -35,7 +35,7 @@ def load(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, length: float) 
     if undecided:
         w.ahead = SOON * length
         return look_ahead(m, plan, w, z, t, w.ahead)
-    if not free_acceleration(m, w, within(w, t), w.q, w.v, w.free):
+    if not free_acceleration(m, w, within(w, t), w.q, w.v, w.a_free):
         return False
     needed = w.closed_now > 0 or w.touching
     for c in range(n_c):
@@ -58,7 +58,7 @@ def look_ahead(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, ahead: fl
         q[i] = w.q[i] + ahead * (w.v[i] + 0.5 * ahead * w.a[i])
         v[i] = w.v[i] + ahead * w.a[i]
     later = t + ahead
-    if not free_acceleration(m, w, within(w, later), q, v, w.free):
+    if not free_acceleration(m, w, within(w, later), q, v, w.a_free):
         return False
     w.touching = True
     for c in range(w.n_c):
@@ -79,7 +79,7 @@ def decide(m: Model, plan: Plan, w: Work, at: float, q: Doubles, v: Doubles, t: 
     gap_rates(m, at, q, v, w.G, w.gap_t)
     biases(m, w, at, q, v)
     for c in range(n_c):
-        w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
+        w.alpha[c] = product(w.G, w.a_free, c, w.n_q) + w.bias[c]
     if (w.closed_now > 0 or w.touching) and not plan.constant:
         respond(m, w)
     if not hold(m, plan, w, WHOLE, t):

@@ -9,13 +9,13 @@ import cython
 
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import copy, distance, product
 from lcpstep.pointers import abs, max, min
 from lcpstep.stepping.pieces.codes import (
     AGAIN,
     CLOSED,
     CORNER,
-    EPS,
     FINISHED,
     LCP_FAILED,
     LEFT,
@@ -27,8 +27,8 @@ from lcpstep.stepping.pieces.event import straighten_struck, touches
 from lcpstep.stepping.pieces.impulses import strike
 from lcpstep.stepping.pieces.jumps import breaks
 from lcpstep.stepping.pieces.keep import keep
-from lcpstep.stepping.pieces.loop import Steps, is_finite
-from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
+from lcpstep.stepping.pieces.loop import Steps
+from lcpstep.stepping.pieces.magnitudes import acceleration_terms, velocity_of
 from lcpstep.stepping.pieces.piece import penetrates
 from lcpstep.stepping.pieces.polynomial import (
     NODES,
@@ -100,7 +100,7 @@ class PolynomialSteps(Steps):
             if not self.opens:
                 self.found = landing
         self.ends = self.found == NOBODY and self.tau == length
-        self.ends = self.ends and self.w.sigma + length >= self.w.end * (1.0 - EPS)
+        self.ends = self.ends and self.w.sigma + length >= self.w.end * (1.0 - RESOLUTION)
         return FINISHED
 
     def measure_at(self, at: float, tau: float) -> None:
@@ -198,7 +198,7 @@ def slide(m: Model, w: Work, t: float) -> None:
     """Velocities of closed contacts along the surface, against the drift of the integration."""
     gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
     for c in range(w.n_c):
-        w.gap_try[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c] if w.status[c] == CLOSED else 0.0
+        w.gap_try[c] = velocity_of(w, c) if w.status[c] == CLOSED else 0.0
     newton_step(w, w.v)
 
 

@@ -12,10 +12,10 @@ from lagrangian import Scene
 from lcpstep.kernels.clock import Clock
 from lcpstep.kernels.dynamics import moves, varies
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.model import ends
 from lcpstep.stepping.extent import extent, is_stiff
 from lcpstep.stepping.pieces.carried import displaced
-from lcpstep.stepping.pieces.codes import ROUNDING
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.steps import MARGIN, inverse
 from lcpstep.turns import turns
@@ -66,7 +66,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         "h": h, "made_for": h, "trapezoidal": trapezoidal, "stiff": trapezoidal and stiff,
         "steady": trapezoidal and not stiff and not varies(m),
         "plain": constant and not moves(m), "constant": constant, "small": n_q <= SMALL,
-        "slack": ROUNDING * long, "per_step": method.max_per_step,
+        "slack": NOISE * long, "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": most,
         "clock": Clock(scene.t_span, turns(scene).stops, scene.period),
@@ -92,7 +92,7 @@ def size(scene: Scene, m: Model, method: Located, piece: float, pushes: Array) -
     at, pushed = (scene.t_span[0], scene.q0, scene.v0), method.tolerance is None
     own = extent(m, *at, method.h, piece, pushes, pushed)
     if method.tolerance is not None:
-        own = max(own, min(1.0, NO_GAP * method.tolerance / ROUNDING))
+        own = max(own, min(1.0, NO_GAP * method.tolerance / NOISE))
     return own or 1.0
 
 

@@ -14,13 +14,14 @@ import cython
 
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.pointers import abs, inf, max
-from lcpstep.stepping.pieces.codes import GROUND, IMPACT, ROUNDING, SAME_TIME
+from lcpstep.stepping.pieces.codes import GROUND, IMPACT, SAME_TIME
 from lcpstep.stepping.pieces.impulses import SMALL
+from lcpstep.stepping.pieces.sequences import SHORT
 from lcpstep.stepping.pieces.state import Plan, Work
-
-CLOSE = 1e-9  # of a step: impacts of a contact as close as this,
-SHORT = 1e-7  # and hops as short as this, are left to the general treatment
+from lcpstep.stepping.pieces.switches import COLLAPSE
+from lcpstep.stepping.pieces.times import look_one, move_gap, move_one
 
 
 def race(m: Model, plan: Plan, w: Work, t: float, sigma: float, end: float, most: int) -> int:
@@ -57,9 +58,7 @@ def race(m: Model, plan: Plan, w: Work, t: float, sigma: float, end: float, most
 def look_at(w: Work, tau: float) -> None:
     """All coordinates at tau, each moved on from its own time."""
     for i in range(w.n_q):
-        s = tau - w.q_time[i]
-        w.q_try[i] = w.q[i] + s * (w.v[i] + 0.5 * s * w.a[i])
-        w.v_try[i] = w.v[i] + s * w.a[i]
+        look_one(w, i, tau - w.q_time[i])
 
 
 def keep_times(plan: Plan, w: Work, t: float, now: float, tau: float) -> None:
@@ -93,7 +92,7 @@ def ordinary(m: Model, plan: Plan, w: Work, c: int, tau: float) -> bool:
     """
     h, r, s = plan.h, m.restitution[c], tau - w.since[c]
     u = w.rate[c] + 2.0 * s * w.half[c]
-    if not u < 0.0 or r == 0.0 or (w.last[c] >= 0.0 and tau - w.last[c] <= CLOSE * h):
+    if not u < 0.0 or r == 0.0 or (w.last[c] >= 0.0 and tau - w.last[c] <= COLLAPSE * h):
         return False
     if r < 1.0 and w.half[c] < 0.0 and (r * u / w.half[c] < SHORT * h or w.hits[c] >= plan.many):
         return False
@@ -115,11 +114,10 @@ def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
     p = -(1.0 + r) * u / W[c * n_c + c]
     g, leaves = m.offset[c], r * u
     for i in range(first, last):
-        s = tau - w.q_time[i]
-        w.q[i] += s * (w.v[i] + 0.5 * s * w.a[i])
-        v = w.v[i] + s * w.a[i]
+        move_one(w, i, tau - w.q_time[i])
+        v = w.v[i]
         w.v[i] = v + MG[k + i] * p
-        if abs(w.v[i]) <= ROUNDING * (abs(v) + abs(MG[k + i] * p)):
+        if abs(w.v[i]) <= NOISE * (abs(v) + abs(MG[k + i] * p)):
             w.v[i] = 0.0
         w.q_time[i] = tau
         g += G[k + i] * w.q[i]
@@ -140,7 +138,7 @@ def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
             w.gap[d] += s * (w.rate[d] + s * w.half[d])
             w.rate[d] += 2.0 * s * w.half[d] + W[d * n_c + c] * p
             change = -W[d * n_c + c] * leaves / W[c * n_c + c]
-            if abs(change) <= ROUNDING * abs(w.rate[d]):
+            if abs(change) <= NOISE * abs(w.rate[d]):
                 w.rate[d] += change
             w.since[d], w.fall[d] = tau, 0.0
             w.next_zero[d] = next_zero(w, d, end)
@@ -149,12 +147,8 @@ def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
 def bring_together(w: Work, now: float, struck: int) -> None:
     """Bring all coordinates and gaps to one time."""
     for i in range(w.n_q):
-        s = now - w.q_time[i]
-        w.q[i] += s * (w.v[i] + 0.5 * s * w.a[i])
-        w.v[i] += s * w.a[i]
+        move_one(w, i, now - w.q_time[i])
         w.q_time[i] = now
     for c in range(w.n_c):
-        s = now - w.since[c]
-        w.gap[c] += s * (w.rate[c] + s * w.half[c])
-        w.rate[c] += 2.0 * s * w.half[c]
+        move_gap(w, c, now - w.since[c])
         w.grounded[c] = GROUND if c == struck else 0

@@ -20,19 +20,20 @@ import cython
 
 from lcpstep.kernels.linear import grow_factor, solve_definite, solve_factored
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import add, clear, copy, largest, product
+from lcpstep.kernels.roundings import NOISE, RESOLUTION
+from lcpstep.kernels.vectors import clear, copy, largest, product
 from lcpstep.lcp.kernel import solve_small
 from lcpstep.lcp.status import SOLVED
-from lcpstep.pointers import Doubles, abs, after, max
-from lcpstep.stepping.pieces.codes import EPS, ROUNDING
+from lcpstep.pointers import Doubles, abs, max
 from lcpstep.stepping.pieces.independent import bear_on_independent
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
+from lcpstep.stepping.pieces.smooth import push_held
 from lcpstep.stepping.pieces.state import Plan, Work
 
 NONE, FORCES, IMPULSES = range(3)  # what a guess is of
 REFINEMENTS = 6
-SETTLED = 4 * EPS  # correction, relative to the largest impulse, after which none is needed
-EXACT = 8 * EPS  # residual, relative to the largest b, at which the forces of before are still right
+SETTLED = 4 * RESOLUTION  # correction, relative to the largest impulse, after which none is needed
+EXACT = 8 * RESOLUTION  # residual, relative to the largest b, at which the forces of before are still right
 PULLS = 1e-10  # relative to the largest impulse: what an answer found without the solver may lack
 
 
@@ -117,7 +118,7 @@ def closes(m: Model, plan: Plan, w: Work, W: Doubles, k: int, n_k: int, guess: i
     if u >= 0.0:
         return False
     size += acceleration_terms(m, w, c) if guess == FORCES else speed_terms(plan, w, c)
-    return -u > ROUNDING * size
+    return -u > NOISE * size
 
 
 def right(w: Work, inverse: Doubles, factored: bool, n: int) -> bool:
@@ -177,7 +178,7 @@ def refine(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, n_k: i
         for k in range(n):
             if w.z[k] > 0.0 or not solved:
                 worst = max(worst, abs(w.residual[k]))
-        if worst <= EPS * size:
+        if worst <= RESOLUTION * size:
             break
         if n_k < 0:
             n_k = factor_pressed(w, W, n, not solved)
@@ -246,9 +247,7 @@ def keep_closed(w: Work, W: Doubles, MG: Doubles, n: int) -> bool:
     n_k = factor_pressed(w, W, n, False)
     for i in range(n_k):
         w.change[i] = -w.residual[w.place[i]]
-    solve_factored(w.problem, n, n_k, w.change)
-    for i in range(n_k):
-        add(w.a, w.change[i], after(MG, w.held[i] * w.n_q), w.n_q)
+    push_held(w, MG, n, n_k, w.a)
     return True
 
 

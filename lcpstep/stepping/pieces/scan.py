@@ -14,9 +14,10 @@ import cython
 
 from lcpstep.kernels.dynamics import moves
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import copy
+from lcpstep.kernels.roundings import NOISE, RESOLUTION
+from lcpstep.kernels.vectors import copy, size_of_product
 from lcpstep.pointers import abs, after, inf, max, min
-from lcpstep.stepping.pieces.codes import CLOSED, EPS, LEFT, NOBODY, OPEN, ROUNDING
+from lcpstep.stepping.pieces.codes import CLOSED, LEFT, NOBODY, OPEN
 from lcpstep.stepping.pieces.contact_forces import pulls
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.polynomial import NODES, PROBES, WEIGHTS, Polynomial, contacts_at, force_at
@@ -59,9 +60,7 @@ def height_terms(m: Model, w: Work, z: Polynomial, c: int) -> float:
     if not m.flat:
         return 0.0
     size = abs(m.offset[c]) + (abs(m.motion_now[3 * c]) if moves(m) else 0.0)
-    for i in range(w.n_q):
-        size += abs(m.G[c * w.n_q + i] * z.q[i])
-    return size
+    return size + size_of_product(m.G, z.q, c, w.n_q)
 
 
 def landing(
@@ -72,7 +71,7 @@ def landing(
     if low and w.gap[c] <= 0.0 and w.half[c] < 0.0:
         guess = min(b, -w.rate[c] / w.half[c])
     w.bracket.begin(a, b, True, guess)
-    while w.bracket.seek(2.0 * EPS * w.bracket.x):
+    while w.bracket.seek(2.0 * RESOLUTION * w.bracket.x):
         if low:
             f, slope = hop_at(m, plan, w, z, t, w.bracket.x, c)
         else:
@@ -84,7 +83,7 @@ def landing(
 def lowest(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int) -> float:
     """Where the velocity of gap c passes zero upwards in (a, b)."""
     w.bracket.span(a, z.rate_from[c], b, z.rate_to[c])
-    while w.bracket.seek(4.0 * EPS * w.bracket.b):
+    while w.bracket.seek(4.0 * RESOLUTION * w.bracket.b):
         _g, f = gap_at(m, plan, w, z, t, w.bracket.x, c)
         w.bracket.chord(f)
     return w.bracket.x
@@ -134,7 +133,7 @@ def landing_within(
     if fine and z.gap_to[c] <= plan.slack:  # finer than positions tell
         mean, _ = hop_at(m, plan, w, z, t, b, c)
         z.gap_to[c] = b * mean
-        if hop and w.grounded[c] == LEFT and abs(mean) <= ROUNDING * speed_terms(plan, w, c):
+        if hop and w.grounded[c] == LEFT and abs(mean) <= NOISE * speed_terms(plan, w, c):
             return inf  # what has been let go a moment ago
     low = b
     if z.gap_to[c] > 0.0:
@@ -144,7 +143,7 @@ def landing_within(
         g, _ = gap_at(m, plan, w, z, t, low, c)
         if g > 0.0:
             return inf
-        if g >= -EPS * height_terms(m, w, z, c):  # a touch
+        if g >= -RESOLUTION * height_terms(m, w, z, c):  # a touch
             return low
     start = max(a, SOON * end) if w.grounded[c] == LEFT else a
     if hop and start == 0.0 and w.rate[c] <= 0.0:
@@ -198,7 +197,7 @@ def brief_release(
         most = max(max(left, right), max(z.pressed[before * n_c + c], z.pressed[last * n_c + c]))
         if w.status[c] != CLOSED or most <= FALLS * max(min(left, right), 0.0):
             continue
-        if not w.W[c * w.n_c + c] * most > ROUNDING * acceleration_terms(
+        if not w.W[c * w.n_c + c] * most > NOISE * acceleration_terms(
             m, w, c
         ):  # rounding of what they balance
             continue
@@ -258,7 +257,7 @@ def vanishing(
     if w.p[c] <= 0.0:
         return a
     w.bracket.span(a, w.p[c], b, f_b)
-    while w.bracket.seek(4.0 * EPS * (t + w.bracket.b)):
+    while w.bracket.seek(4.0 * RESOLUTION * (t + w.bracket.b)):
         force_at(m, plan, w, z, t, w.bracket.x)
         w.bracket.chord(w.p[c])
     return w.bracket.x

@@ -12,10 +12,11 @@ from __future__ import annotations
 import cython
 
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import clear
 from lcpstep.pointers import abs
-from lcpstep.stepping.pieces.codes import CLOSED, OPEN, ROUNDING
-from lcpstep.stepping.pieces.magnitudes import faint
+from lcpstep.stepping.pieces.codes import CLOSED, OPEN
+from lcpstep.stepping.pieces.magnitudes import faint, with_terms
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import AT_ONCE_FAST, COLLAPSE, SHORT_TOGETHER
 from lcpstep.stepping.pieces.times import driven_by
@@ -35,11 +36,8 @@ def measure_rates(w: Work) -> None:
     impact. Speeds finer than the velocities resolve stay, and so does rest.
     """
     for c in range(w.n_c):
-        u, size = w.gap_t[c], abs(w.gap_t[c])
-        for i in range(w.first_coordinate[c], w.last_coordinate[c] + 1):
-            x = w.G[c * w.n_q + i] * w.v[i]
-            u, size = u + x, size + abs(x)
-        fine = ROUNDING if abs(u) <= FINE * size else 0.0
+        u, size = with_terms(w, w.G, c, w.v, w.gap_t[c])
+        fine = NOISE if abs(u) <= FINE * size else 0.0
         if w.status[c] == OPEN and abs(u - w.rate[c]) > fine * size:
             w.rate[c], w.fall[c] = u, 0.0
 

@@ -19,6 +19,7 @@ import cython
 
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import add, product
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.pieces.chosen import solve_chosen
@@ -31,7 +32,6 @@ from lcpstep.stepping.pieces.codes import (
     INERTIA,
     LCP_FAILED,
     NOT_FINITE,
-    ROUNDING,
     STOPS,
 )
 from lcpstep.stepping.pieces.impulses import touch
@@ -60,7 +60,7 @@ def settle(m: Model, plan: Plan, w: Work, t: float) -> int:
         return LCP_FAILED
     if matters(m, w, span > SHORT_TOGETHER * plan.h):
         w.cut += 1
-    add(w.v, span, w.free, n)
+    add(w.v, span, w.a_free, n)
     for c in range(w.n_c):
         p = w.z[c]
         w.impulse[c] += p
@@ -83,7 +83,7 @@ def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:
     if not renew_mobility(m, plan, w, t):
         return False
     for c in range(n_c):
-        w.alpha[c] = product(w.G, w.free, c, w.n_q) + w.bias[c]
+        w.alpha[c] = product(w.G, w.a_free, c, w.n_q) + w.bias[c]
         if w.gap[c] <= plan.slack:
             w.gap[c] = 0.0
         w.chosen[c], w.z[c], w.before[c] = c, 0.0, w.rate[c]
@@ -115,11 +115,11 @@ def note(m: Model, plan: Plan, w: Work, start: float, end: float, span: float) -
             w.record.note(start, c, w.before[c], 0.0 if touches else w.rate[c], w.z[c], kind)
             if touches:
                 stick(w, c, end)
-        elif closed and not pressed and w.rate[c] > ROUNDING * speed_terms(plan, w, c):
+        elif closed and not pressed and w.rate[c] > NOISE * speed_terms(plan, w, c):
             release(m, plan, w, c, end, w.rate[c])
         if w.status[c] == CLOSED:
             w.gap[c] = w.rate[c] = 0.0
-        elif touches and abs(w.rate[c]) <= ROUNDING * speed_terms(plan, w, c):  # at rest: the forces decide
+        elif touches and abs(w.rate[c]) <= NOISE * speed_terms(plan, w, c):  # at rest: the forces decide
             touch(w, c)
         else:
             w.gap[c] = max(0.0, w.gap[c] + span * w.rate[c])

@@ -23,7 +23,7 @@ from lcpstep.kernels.vectors import add, copy, filled, product, product_at, prod
 from lcpstep.pointers import Doubles, abs, after, max, min
 from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.pieces.times import within
+from lcpstep.stepping.pieces.times import look_one, move_gap, move_one, within
 
 LANDINGS = 6  # Newton iterations onto the surface
 ON_THE_SURFACE = 0.0625  # of what counts as closed: where these end
@@ -76,7 +76,7 @@ def accelerate(m: Model, plan: Plan, w: Work) -> int:
             for j in range(n):
                 w.a_try[i] -= m.C[i * n + j] * w.v[j] + m.K[i * n + j] * (w.q[j] + 0.5 * rest * w.v[j])
     for i in range(n):
-        w.free[i] = product(after(plan.A_inverse, place * n * n), w.a_try, i, n)
+        w.a_free[i] = product(after(plan.A_inverse, place * n * n), w.a_try, i, n)
     return place
 
 
@@ -98,7 +98,7 @@ def renew_forces(m: Model, plan: Plan, w: Work, t: float) -> bool:
         external_force(m, within(w, t), w.q, w.v, w.force)
         w.force_evaluations += 1
     elif not plan.trapezoidal:
-        if not free_acceleration(m, w, within(w, t), w.q, w.v, w.free):
+        if not free_acceleration(m, w, within(w, t), w.q, w.v, w.a_free):
             return False
         w.force_evaluations += 1
     return True
@@ -145,8 +145,7 @@ def measure(m: Model, w: Work, t: float) -> None:
 def look_along(w: Work, tau: float) -> None:
     """The state at tau after the base, along the quadratics, into w.q_try and w.v_try."""
     for i in range(w.n_q):
-        w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
-        w.v_try[i] = w.v[i] + tau * w.a[i]
+        look_one(w, i, tau)
 
 
 def renew_mobility(m: Model, plan: Plan, w: Work, t: float) -> bool:
@@ -161,16 +160,14 @@ def renew_mobility(m: Model, plan: Plan, w: Work, t: float) -> bool:
 def shift(w: Work, tau: float) -> None:
     """The state at tau after the base becomes the base: along the quadratics."""
     for i in range(w.n_q):
-        w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
-        w.v[i] += tau * w.a[i]
+        move_one(w, i, tau)
     for c in range(w.n_c):
         w.impulse[c] += tau * w.force_now[c]
         w.pushed[c] += tau * w.force_now[c]
         if w.status[c] == CLOSED:
             w.gap[c] = w.rate[c] = 0.0
         else:
-            w.gap[c] += tau * (w.rate[c] + tau * w.half[c])
-            w.rate[c] += 2.0 * tau * w.half[c]
+            move_gap(w, c, tau)
 
 
 def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
@@ -228,9 +225,14 @@ def newton_step(w: Work, x: Doubles) -> None:
                 if grow_factor(w.W, n_c, w.problem, n_c, w.held, w.doubt, n_k):
                     w.change[n_k] = -w.gap_try[c]
                     n_k += 1
-    solve_factored(w.problem, n_c, n_k, w.change)
+    push_held(w, w.MG, n_c, n_k, x)
+
+
+def push_held(w: Work, MG: Doubles, stride: int, n_k: int, x: Doubles) -> None:
+    """X + M^-1 G^T z of the n_k contacts held, G M^-1 G^T z = `change`; its factor has `stride` numbers a row."""
+    solve_factored(w.problem, stride, n_k, w.change)
     for k in range(n_k):
-        add(x, w.change[k], after(w.MG, w.held[k] * w.n_q), w.n_q)
+        add(x, w.change[k], after(MG, w.held[k] * w.n_q), w.n_q)
 
 
 def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
@@ -252,7 +254,7 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
         put_on_surface(m, plan, w, t_next)
     if plan.trapezoidal:
         for i in range(n):
-            w.v[i] += 0.5 * tau * (w.free[i] + w.a[i])
+            w.v[i] += 0.5 * tau * (w.a_free[i] + w.a[i])
     else:
         end = within(w, t_next)
         if not free_acceleration(m, w, end, w.q, w.v_try, w.a_try):
@@ -260,6 +262,6 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
         w.force_evaluations += 1
         for i in range(n):
             w.v[i] += 0.5 * tau * (w.a_try[i] + w.a[i])
-            w.free[i] = w.a_try[i]
+            w.a_free[i] = w.a_try[i]
     measure(m, w, t_next)
     return True

@@ -17,7 +17,7 @@ cdef class Work:
     cdef readonly Py_ssize_t n_q, n_c
     cdef Workspace lcp
     cdef Bracket bracket
-    cdef Doubles q, v, free, a, force, next_force, q_base, q_try, v_try, a_try, jolt, q_from, v_from, a_from
+    cdef Doubles q, v, a_free, a, force, next_force, q_base, q_try, v_try, a_try, jolt, q_from, v_from, a_from
     cdef Doubles q_time, swing, v_struck, gap, rate, half, alpha, bend, bias, gap_try, gap_t, gap_t_try, end_s
     cdef Doubles last, force_now, older, older_time, p, b, z, residual, change, doubt, before, impulse_from
     cdef Doubles since, next_zero, turned, turns, hops, fall, pushed, impulse, G, G_try, MG, W, M, problem

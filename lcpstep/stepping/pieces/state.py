@@ -69,8 +69,7 @@ class Work:
 
     Vectors, a number per coordinate:
     q, v            state at the base of the piece
-    free            acceleration without contact forces
-    a               acceleration with them
+    a_free, a       acceleration without contact forces, and with them
     force, next_force    F(t) of linear systems at the base, and at the end of the smooth interval
     q_base, q_try, v_try, a_try    to try; of an impact v_try are the sizes of the terms of v
     jolt            change by the impulses or forces of several contacts
@@ -200,7 +199,7 @@ class Work:
         """Numbers per coordinate, from x on; the position comes first, then the velocity."""
         n = self.n_q
         self.q, self.v = x, after(x, n)
-        self.free, self.a = after(x, 2 * n), after(x, 3 * n)
+        self.a_free, self.a = after(x, 2 * n), after(x, 3 * n)
         self.force, self.next_force = after(x, 4 * n), after(x, 5 * n)
         self.q_base, self.q_try = after(x, 6 * n), after(x, 7 * n)
         self.v_try, self.a_try = after(x, 8 * n), after(x, 9 * n)

@@ -1,11 +1,11 @@
-"""Times of `Located` to rounding, as kernels that the compiler merges into others."""
+"""Times of `Located` to rounding, and the way along a piece of order two, as kernels merged into others."""
 
 from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.pointers import abs, max, min
-from lcpstep.stepping.pieces.codes import EPS
 from lcpstep.stepping.pieces.state import Plan, Work
 
 
@@ -21,4 +21,22 @@ def at_corner(plan: Plan, w: Work, t: float) -> bool:
 
 def driven_by(w: Work, c: int, t: float) -> float:
     """How far the obstacle of contact c goes in what time t is rounded by, and a phase that callbacks make of it."""
-    return float(4.0 * EPS * abs(t * w.gap_t[c]))
+    return float(4.0 * RESOLUTION * abs(t * w.gap_t[c]))
+
+
+def look_one(w: Work, i: int, tau: float) -> None:
+    """Coordinate i and its velocity at tau after its base, into w.q_try and w.v_try."""
+    w.q_try[i] = w.q[i] + tau * (w.v[i] + 0.5 * tau * w.a[i])
+    w.v_try[i] = w.v[i] + tau * w.a[i]
+
+
+def move_one(w: Work, i: int, tau: float) -> None:
+    """Those become its base."""
+    w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
+    w.v[i] += tau * w.a[i]
+
+
+def move_gap(w: Work, c: int, tau: float) -> None:
+    """Gap c and its velocity at tau after its base become its base."""
+    w.gap[c] += tau * (w.rate[c] + tau * w.half[c])
+    w.rate[c] += 2.0 * tau * w.half[c]

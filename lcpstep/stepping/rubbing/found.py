@@ -23,8 +23,8 @@ from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.hybrid.roots import DEGREE, NONE, taylor
 from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
 from lcpstep.events.rows.equations import acceleration_of, size_of, velocity_of
-from lcpstep.kernels.clock import NOISE, RESOLUTION
-from lcpstep.kernels.quadratic import first_zero
+from lcpstep.kernels.quadratic import first_zero, highest
+from lcpstep.kernels.roundings import NOISE, RESOLUTION
 from lcpstep.kernels.vectors import copy, largest
 from lcpstep.pointers import Doubles, abs, after, max, min
 from lcpstep.stepping.rubbing.let_go import hops, is_motion, rises, widen_until_decided
@@ -225,10 +225,10 @@ def low_flight(s: Strides, g: int) -> float:
 def is_low(s: Strides, c: int, tau: float) -> bool:
     """Whether a hop of contact c is so low up to tau that its acceleration at first tells more of it than its gap."""
     g = GUARDS * c  # which others move by more than rounding where they are put onto their surfaces
-    highest = s.height[c] + tau * (abs(s.begin_slope[g]) + 0.5 * tau * abs(s.begin_bend[c]))
     change = abs(s.end_bend[c] - s.begin_bend[c]) * tau / s.length
     most = max(FAINT * largest(s.y, 0.0, s.n_q), s.band[g])
-    return highest <= most and change * tau * tau <= 6.0 * s.band[g]
+    low = highest(s.height[c], s.begin_slope[g], s.begin_bend[c], tau) <= most
+    return low and change * tau * tau <= 6.0 * s.band[g]
 
 
 def interrupt(s: Strides, t: float, tau: float) -> None:

@@ -18,19 +18,17 @@ from lcpstep.events.contacts.guards import read_with_rates
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.contacts.step import mark_resting
 from lcpstep.events.rows.jumps import farthest_off, find_jump
-from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 from lcpstep.kernels.vectors import copy, distance, largest
 from lcpstep.pointers import abs, after, inf, max, min
+from lcpstep.stepping.adaptive import LEAST_SHARE, NEAR, NOISE
 from lcpstep.stepping.rubbing.found import curve, measure_base, note_arrival, note_middle
 from lcpstep.stepping.rubbing.let_go import is_motion
 from lcpstep.stepping.rubbing.strides import Strides, go_on_with, push_end_back
 
-ROUNDING = 8 * RESOLUTION  # relative differences that are no errors
 SAFETY, LEAST, MOST = 0.9, 0.2, 2.0  # of the change of step
-LEAST_SHARE = 1e-3  # of the tolerance, in steps within which a force jumps
 STEEP = 1.585  # an error that falls by no more than this power of the step, a third at half of it, comes from a jump
-NEAR = 3.0  # errors of a guard: from where on it may have acted
 
 
 def pace(s: Strides, t: float, longest: float) -> int:
@@ -57,8 +55,8 @@ def pace(s: Strides, t: float, longest: float) -> int:
         allowed = share * s.tolerance
         if error <= allowed:
             break
-        if h <= 4.0 * RESOLUTION * max(abs(t), s.span) or s.tolerance < ROUNDING:
-            if not error < inf or s.tolerance < ROUNDING or t + h >= s.clock.high:
+        if h <= 4.0 * RESOLUTION * max(abs(t), s.span) or s.tolerance < NOISE:
+            if not error < inf or s.tolerance < NOISE or t + h >= s.clock.high:
                 return why(s, error)
             s.clock.break_at(t + h)
             s.length = 0.0
@@ -145,7 +143,7 @@ def weigh(s: Strides, h: float) -> float:
             wrong_v = max(wrong_v, off)
     size_q, size_v = largest(s.y_new, s.size_q, n), largest(v, s.size_v, n)
     error = max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v))
-    return error - min(ROUNDING, LEAST_SHARE * s.tolerance)
+    return error - min(NOISE, LEAST_SHARE * s.tolerance)
 
 
 def strayed(s: Strides, g: int) -> float:

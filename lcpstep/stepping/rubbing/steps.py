@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.events.contacts.held import know_rows
-from lcpstep.events.contacts.loose import straying
+from lcpstep.events.contacts.loose import straying_seen
 from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import after
 from lcpstep.stepping.rubbing.stride import stride
@@ -29,6 +28,4 @@ class RubbingSteps(Strides):
             return -1
         copy(self.seen, self.y_new, self.n)
         push_end_back(self, after(self.seen, self.n_q))
-        if not know_rows(self, t, self.seen, self.dy):
-            return -1
-        return straying(self, after(self.dy, self.n_q), level)
+        return straying_seen(self, t, level)

@@ -22,7 +22,7 @@ from lcpstep.events.rows.jumps import breaks
 from lcpstep.events.rows.keep import keep, keep_awaited, keep_event
 from lcpstep.events.rows.loads import list_by_row
 from lcpstep.events.rows.projection import project
-from lcpstep.kernels.clock import NOISE
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, PROJECTION_FAILED
 from lcpstep.kernels.vectors import add, copy, finite, product
 from lcpstep.pointers import abs, after, max, min

@@ -23,11 +23,10 @@ from lcpstep.events.contacts.smooth import Smooth
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.rows.loads import list_by_row
 from lcpstep.events.rows.projection import push_onto_rows, put_on_rows, take_rows
-from lcpstep.kernels.clock import RESOLUTION
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import add, clear, copy, distance, finite, largest
 from lcpstep.pointers import Doubles, abs, after, min
 
-ROUNDING = 64.0 * RESOLUTION  # of a position
 ARRIVAL = 4  # place of the rates at the end of a step, after those at its stages
 
 
@@ -160,7 +159,7 @@ def pull_back(s: Strides, h: float) -> None:
     """
     off = distance(s.y_new, s.dv, s.n_q)
     own = h * h * largest(after(s.K, s.n_q), 0.0, s.n_q)
-    if ROUNDING * largest(s.y_new, 0.0, s.n_q) < off <= own:
+    if NOISE * largest(s.y_new, 0.0, s.n_q) < off <= own:
         for i in range(s.n_q):
             s.pull[i] = (s.y_new[i] - s.dv[i]) / h
         list_by_row(s.rows, s.rows.held, s.rows.near)

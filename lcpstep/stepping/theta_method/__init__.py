@@ -6,5 +6,5 @@ implicit, responses       Newton's iteration of nonlinear systems; what impulses
 one_contact               one coordinate and contact, in registers
 turned_rows, idle         beside joints: rows that they turn within the step; contacts that bear nothing by turns
 repair                    states put back onto joints and obstacles
-beginning, codes          contacts that a run begins on; why the loop returned
+codes                     why the loop returned
 """

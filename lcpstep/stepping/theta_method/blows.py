@@ -23,9 +23,10 @@ import cython
 
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.recurrence import looks_back
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import add, clear, copy, copy_indices, largest, product, size_of_product
 from lcpstep.pointers import abs, after, max, min
-from lcpstep.stepping.steps import LEFT, RESOLUTION, RETURNED, TURNS
+from lcpstep.stepping.steps import LEFT, RETURNED, TURNS
 from lcpstep.stepping.theta_method.codes import FINISHED, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Blows, Plan, Rows, State
 from lcpstep.stepping.theta_method.responses import prepare

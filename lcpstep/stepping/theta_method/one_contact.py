@@ -12,9 +12,10 @@ import cython
 from lcpstep.kernels.dynamics import external_force, moves, obstacle, varies
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.one_row import keep_one
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import finite
 from lcpstep.pointers import abs, max
-from lcpstep.stepping.steps import RESOLUTION, RESTING, UNTOLD
+from lcpstep.stepping.steps import RESTING, UNTOLD
 from lcpstep.stepping.theta_method.codes import IMPACT, NO_EVENT, RELEASE, STICK
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 

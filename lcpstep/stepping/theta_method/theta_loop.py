@@ -1,16 +1,16 @@
-"""The loop of the Moreau theta-method over steps of one size; one step: `theta_step`."""
+"""The loop of the Moreau theta-method over steps of one size, and what it begins on; one step: `theta_step`."""
 
 from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.acceleration import divide_by_mass
 from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
-from lcpstep.kernels.dynamics import external_force, gap_velocities, gaps, total_force
+from lcpstep.kernels.dynamics import external_force, gap_velocities, gaps, harmonic_terms, total_force
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.vectors import copy, finite
-from lcpstep.pointers import min
-from lcpstep.stepping.steps import LATE
-from lcpstep.stepping.theta_method.beginning import note_touching
+from lcpstep.kernels.vectors import copy, finite, largest
+from lcpstep.pointers import abs, inf, max, min
+from lcpstep.stepping.steps import LATE, TOUCHING
 from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINITE
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.one_contact import in_registers
@@ -113,3 +113,35 @@ def keep_times(h: float, s: State, t: float, t_next: float) -> None:
             s.q_between[i] = (1.0 - share) * s.q[i] + share * s.next_q[i]
             s.v_between[i] = (1.0 - share) * s.v[i] + share * s.next_v[i]
         s.record.keep_awaited(s.q_between, s.v_between, s.impulse)
+
+
+def note_touching(m: Model, plan: Plan, s: State, t: float) -> None:
+    """Contacts that begin at rest at next to no gap are closed up to a share of the way that forces push in a step.
+
+    Such gaps are rounding of a motion before: all lengths may be zero, or rounding themselves.
+    """
+    near = TOUCHING * plan.h * pushed(m, plan, s, t)
+    if not near < inf:
+        return
+    for i in range(s.n_c):
+        if abs(s.g[i]) <= near and plan.h * abs(s.u[i]) <= near:
+            s.slack[i] = max(s.slack[i], near)
+
+
+def pushed(m: Model, plan: Plan, s: State, t: float) -> float:
+    """The largest change of a velocity by the forces of a step, whose terms do not cancel; harmonic ones at most."""
+    n = s.n_q
+    if not m.linear:
+        copy(s.try_v, s.force, n)
+        known = divide_by_mass(m, t, s.q, s.v, s.A, s.R, s.try_v)
+        return plan.h * largest(s.try_v, 0.0, n) if known else 0.0
+    for j in range(n):
+        s.try_f[j] = max(abs(s.force[j]), harmonic_terms(m, j))
+    most = 0.0
+    for i in range(n):
+        total = 0.0
+        for j in range(n):
+            k = i * n + j
+            total += abs(plan.A_f[k]) * s.try_f[j] + abs(plan.A_q[k] * s.q[j]) + abs(plan.A_v[k] * s.v[j])
+        most = max(most, total)
+    return most

@@ -29,10 +29,11 @@ import cython
 from lcpstep.kernels.dynamics import external_force, gap_rates, gaps
 from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import add, clear, copy, finite, product, size_of_product
 from lcpstep.pointers import abs, after, max, whole
 from lcpstep.stepping.constraints.joint_rows import joints_hold
-from lcpstep.stepping.steps import RESOLUTION, RESTING, UNTOLD
+from lcpstep.stepping.steps import RESTING, UNTOLD
 from lcpstep.stepping.theta_method.blows import one_after_another, separates
 from lcpstep.stepping.theta_method.codes import (
     FINISHED,

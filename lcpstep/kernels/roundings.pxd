@@ -1,0 +1,3 @@
+cdef extern from *:
+    double RESOLUTION "0x1p-52"
+    double NOISE "0x1p-46"
