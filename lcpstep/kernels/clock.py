@@ -72,9 +72,17 @@ class Clock:
         """What cannot be told of a time at most `length` after the base: some roundings."""
         return 4.0 * RESOLUTION * (abs(self.t0) + length)
 
+    def border(self) -> float:
+        """Where the smooth interval around the base ends, or the span."""
+        return min(self.t_end, self.high)
+
+    def margin(self, t: float) -> float:
+        """By how much a time is moved to be on its own side of a corner."""
+        return NUDGE * max(abs(t), self.scale)
+
     def inside(self, t: float) -> float:
         """A time moved off the ends of its smooth interval, where accelerations may jump."""
-        margin = NUDGE * max(abs(t), self.scale)
+        margin = self.margin(t)
         return min(max(t, self.low + margin), self.high - margin)
 
     def lies_apart(self, t: float) -> bool:
@@ -82,18 +90,18 @@ class Clock:
 
         The end may be where a jump was found on a motion that was less exact: it is just before that, then.
         """
-        margin = NUDGE * max(abs(t), self.scale)
+        margin = self.margin(t)
         return self.low + margin < t < (self.high if self.high == self.jump else self.high - margin)
 
     def break_at(self, t: float) -> None:
         """The smooth interval at hand ends at t, as has been found; at the base where that cannot be told from it."""
-        if t <= self.t0 + NUDGE * max(abs(t), self.scale):
+        if t <= self.t0 + self.margin(t):
             t = self.t0
         self.high = self.jump = t
 
     def moment(self, t: float) -> float:
         """What an impact near time t must be off a corner to be told from it."""
-        return 2.0 * NUDGE * max(abs(t), self.scale)
+        return 2.0 * self.margin(t)
 
     def leaves_to_corner(self, t: float) -> bool:
         """Whether a time cannot be told from the corner that ends its smooth interval, which is not the last."""
@@ -101,7 +109,7 @@ class Clock:
 
     def find_corners(self, t: float) -> None:
         """The smooth interval that begins at t or contains it."""
-        near = t + 0.5 * NUDGE * max(abs(t), self.scale)
+        near = t + 0.5 * self.margin(t)
         if self.low <= near < self.high:
             return
         self.find_named(near)

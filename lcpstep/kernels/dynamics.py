@@ -36,6 +36,12 @@ def external_force(m: Model, t: float, q: Doubles, v: Doubles, out: Doubles) -> 
                 out[i] -= m.M[k] * c[3 * j + 2] + m.C[k] * c[3 * j + 1] + m.K[k] * c[3 * j]
 
 
+def implicit_mass(m: Model, x: float, out: Doubles) -> None:
+    """M + x C + x^2 K, by which implicit steps divide forces: x is the share of the step that these act on."""
+    for i in range(m.n_q * m.n_q):
+        out[i] = m.M[i] + x * m.C[i] + x * x * m.K[i]
+
+
 def harmonic_terms(m: Model, i: int) -> float:
     """Size of the terms of the harmonic force on coordinate i; 0 of a callback's, whose terms are not known."""
     return 0.0 if m.force.given else abs(m.constant[i]) + abs(m.cosine[i]) + abs(m.sine[i])

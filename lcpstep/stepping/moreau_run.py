@@ -22,7 +22,7 @@ from lcpstep.stepping import interpolation
 from lcpstep.stepping.extent import is_stiff, own_places, places, ways
 from lcpstep.stepping.moreau_by_tolerance import Attempts
 from lcpstep.stepping.step_run import StepRun
-from lcpstep.stepping.steps import RESTING, inverse, number, start_side
+from lcpstep.stepping.steps import RESTING, implicit_mass, inverse, number, start_side
 from lcpstep.stepping.theta_method import theta_loop as loop
 from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS, NEED_LCP
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
@@ -171,7 +171,7 @@ def plan(m: Model, c: Rows, h: float, theta: float, slack: float, constant: bool
     """
     M, C, K, G = m.arrays["M"], m.arrays["C"], m.arrays["K"], m.arrays["G"]
     if stiff := is_stiff(m):
-        A_inverse: Any = inverse(M + h * theta * C + (h * theta) ** 2 * K)
+        A_inverse: Any = inverse(implicit_mass(M, C, K, h * theta))
         A_f = h * A_inverse
         A_q, A_v = A_f.dot(K), A_inverse.dot(h * C + h * h * theta * K)
     else:

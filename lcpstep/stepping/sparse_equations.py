@@ -14,6 +14,7 @@ from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.lcp.saddle import Saddle
 from lcpstep.lcp.sparse_rows import SparseRows
 from lcpstep.model import c_functions
+from lcpstep.stepping.steps import implicit_mass
 
 Array = NDArray[np.float64]
 REST = 8 * RESOLUTION  # of the size of a velocity's terms: zero
@@ -147,7 +148,7 @@ class Step:
 
     def __init__(self, equations: Equations, h: float, theta: float) -> None:
         e, self.h, self.theta = equations, h, theta
-        A = e.M + h * theta * e.C + (h * theta) ** 2 * e.K
+        A = implicit_mass(e.M, e.C, e.K, h * theta)
         self.saddle = Saddle(A, e.G)
         self.B = SparseRows(h * e.C + h * h * theta * e.K)
         self.diagonal = A.diagonal()

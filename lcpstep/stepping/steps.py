@@ -45,6 +45,11 @@ def inverse(A: Any) -> NDArray[np.float64]:
     return np.asarray(1.0 / A if A.size == 1 else np.linalg.inv(A))
 
 
+def implicit_mass(M: Any, C: Any, K: Any, x: float) -> Any:
+    """M + x C + x^2 K, by which implicit steps divide forces: x is the share of the step that these act on."""
+    return M + x * C + x**2 * K
+
+
 def check_steps(h: float, span: tuple[float, float], longest: bool) -> None:
     """LcpStepError if steps of h do not fit the span: longer than it, or lost in the rounding of its times.
 

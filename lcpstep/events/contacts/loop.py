@@ -156,7 +156,7 @@ def seek_modes(s: Rubbing, t: float) -> int:
 
     What velocities are known to is that of this instant, and not of states that are looked at further on.
     """
-    longest = min(s.scan_length, min(s.clock.t_end, s.clock.high) - t)
+    longest = min(s.scan_length, s.clock.border() - t)
     copy(s.samples, s.terms, 2 * s.n_c)
     code = decide(s)
     if s.rows.n_kept < s.n_j and contradict(s):

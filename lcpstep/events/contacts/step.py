@@ -41,7 +41,7 @@ def step(s: Rubbing) -> int:
 
 def stride(s: Rubbing) -> int:
     """The same; NOT_FINITE where no forces hold the row of `culprit`."""
-    t0, border = s.clock.t0, min(s.clock.t_end, s.clock.high)
+    t0, border = s.clock.t0, s.clock.border()
     if s.rows.n_held != s.paced:
         change_pace(s)
     code = s.take_step(t0, min(min(border - t0, s.scan_length), LONGEST * shortest_hop(s)), s.scan_length)
@@ -75,7 +75,7 @@ def find(s: Rubbing, h: float) -> int:
 
 def complete(s: Rubbing, h: float) -> int:
     """Take over the step of size h, in which nothing happens; a status."""
-    border = min(s.clock.t_end, s.clock.high)
+    border = s.clock.border()
     interrupt(s, -1, h)
     take_over(s, border if h >= border - s.clock.t0 else s.clock.after(h), h)
     if s.hopping:
@@ -89,7 +89,7 @@ def complete(s: Rubbing, h: float) -> int:
 
 def complete_to_event(s: Rubbing, h: float) -> int:
     """The step up to the guard found within it, and what comes next; a status."""
-    g, border, code = s.guard, min(s.clock.t_end, s.clock.high), DONE
+    g, border, code = s.guard, s.clock.border(), DONE
     if of_force(s, g):
         code = look_ahead(s, h)
         if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
@@ -110,7 +110,7 @@ def complete_to_guard(s: Rubbing, h: float) -> int:
     """The step up to the guard of modes that acts; a status."""
     tau = reach_guard(s, h)
     interrupt(s, -1, tau)
-    take_over(s, min(s.clock.after(tau), min(s.clock.t_end, s.clock.high)), tau)
+    take_over(s, min(s.clock.after(tau), s.clock.border()), tau)
     s.rows.next = SWITCH
     return DONE
 

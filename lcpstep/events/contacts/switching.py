@@ -34,7 +34,7 @@ from lcpstep.kernels.status import (
     NOT_TRANSVERSAL,
     TOO_MANY_EVENTS,
 )
-from lcpstep.pointers import Doubles, max, min
+from lcpstep.pointers import Doubles, max
 
 
 class Watched(Motion):
@@ -64,7 +64,7 @@ def watch(s: Rubbing, h: float, end: float) -> int:
     s.watch.culprit = -1
     if not end > 0.0:
         return DONE
-    s.watch.now, s.watch.t_end = s.clock.t0, min(s.clock.t_end, s.clock.high)
+    s.watch.now, s.watch.t_end = s.clock.t0, s.clock.border()
     k = find(s.watch, h, end)
     if k == UNKNOWN:
         return NOT_FINITE

@@ -16,7 +16,6 @@ from lcpstep.events.flight.motion import Flight, free, on_obstacle, rebase
 from lcpstep.events.flight.near import SHORT, along, hop_end, is_low, low_end, stretch
 from lcpstep.events.flight.rest import contact_impulse, first_release
 from lcpstep.events.flight.roots import first_contact, polish
-from lcpstep.kernels.clock import NUDGE
 from lcpstep.kernels.course import DUE, Events
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.pointers import abs, inf, max, min
@@ -74,7 +73,7 @@ def begin(s: Flight) -> bool:
     if not finite(g, u, alpha):
         return False
     # What rounding of the state may make of rest, and rounding of the time
-    small = ON_THE_SURFACE * max(1.0, abs(s.G * s.v0)) + abs(alpha) * NUDGE * max(abs(t), s.scale)
+    small = ON_THE_SURFACE * max(1.0, abs(s.G * s.v0)) + abs(alpha) * s.margin(t)
     if s.contact and g <= ON_THE_SURFACE * max(1.0, abs(s.G * s.q0)):
         if u < -small:
             impact(s, u)
@@ -88,7 +87,7 @@ def begin(s: Flight) -> bool:
 
 def fly(s: Flight) -> bool:
     """Up to the next contact, or to the end of an interval; False where the motion is not finite."""
-    a, end = s.now - s.t0, min(min(s.t_end, s.high), s.now + STRIDE * s.scan)
+    a, end = s.now - s.t0, min(s.border(), s.now + STRIDE * s.scan)
     tau, u = hop_end(s, a, end - s.t0)
     if tau != NONE:
         go_to(s, tau, end)
@@ -103,7 +102,7 @@ def fly(s: Flight) -> bool:
 
 def search(s: Flight, a: float, end: float) -> bool:
     """`fly` from a on by a long stride where the contact stays clear of it, and by one of the scan elsewhere."""
-    short_end = min(min(s.t_end, s.high), s.now + s.scan)
+    short_end = min(s.border(), s.now + s.scan)
     b = end - s.t0
     g, u, alpha = free(s, b)
     is_near = suspect(s, b - a, g, u, alpha)
@@ -164,7 +163,7 @@ def strike(s: Flight, u: float) -> None:
 
 def skim(s: Flight) -> bool:
     """A stretch of a flight hardly above the obstacle, or up to its end; False where the motion is not finite."""
-    border = min(s.t_end, s.high)
+    border = s.border()
     h = stretch(s)
     tau, u = low_end(s, h)
     g, rise, alpha = along(s, 0, h, 1.0), along(s, 1, h, 1.0), along(s, 2, h, 1.0)
@@ -195,7 +194,7 @@ def leap(s: Flight) -> bool:
         return False
     keep_times(s, end, False)
     # A corner at the very end is still to be turned
-    s.find_corners(end - 4.0 * NUDGE * max(abs(end), s.scale))
+    s.find_corners(end - 4.0 * s.margin(end))
     s.g, s.u, s.alpha = free(s, end - s.t0)
     s.peak = max(s.peak, abs(s.alpha))
     pass_end(s, end)
@@ -215,7 +214,7 @@ def pass_end(s: Flight, end: float) -> None:
 
 def rest(s: Flight) -> bool:
     """Up to the release, or to the end of the scan interval; False where alpha is not finite."""
-    start, end = s.now, min(min(s.t_end, s.high), s.now + s.scan)
+    start, end = s.now, min(s.border(), s.now + s.scan)
     t = NONE
     if start < s.hold:
         end = min(end, s.hold)

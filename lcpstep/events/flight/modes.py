@@ -85,7 +85,7 @@ def chatter_left(s: Flight, u: float, alpha: float) -> float:
         return NONE
     A = -alpha if s.delta == 0.0 else -alpha_at(s, s.now)
     T = 2.0 * u / (A * (1.0 - s.r))
-    if A <= 0.0 or s.now + T > min(s.high, s.t_end):
+    if A <= 0.0 or s.now + T > s.border():
         return NONE
     later = alpha_at(s, s.now + T)
     change = abs(later + A) + abs(alpha + A)

@@ -41,7 +41,7 @@ def hop_end(s: Flight, a: float, b: float) -> tuple[float, float]:
 
 def stretch(s: Flight) -> float:
     """How far the cubic is taken from the base: not beyond a corner."""
-    return min(SHORT * s.scan, (min(s.t_end, s.high) - s.t0) - s.t0_rest)
+    return min(SHORT * s.scan, (s.border() - s.t0) - s.t0_rest)
 
 
 def is_low(s: Flight, a: float) -> bool:

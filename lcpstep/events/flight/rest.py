@@ -14,7 +14,7 @@ from lcpstep.events.flight.contact import NONE
 from lcpstep.events.flight.motion import Flight, on_obstacle
 from lcpstep.gauss import gauss
 from lcpstep.kernels.roundings import RESOLUTION
-from lcpstep.pointers import abs, inf, min
+from lcpstep.pointers import abs, inf
 
 PROBES = 4  # samples of alpha per interval while the contact is closed
 NODES = 8  # and weights of Gauss, for the impulse of the contact force
@@ -50,7 +50,7 @@ def first_release(s: Flight, a: float, alpha_a: float, b: float) -> float:
         t_2 = b if k == PROBES else a + k * h
         if k == PROBES + 1 and not f_0 < f_1:
             break
-        if k == PROBES + 1 and t_2 > min(s.high, s.t_end):
+        if k == PROBES + 1 and t_2 > s.border():
             return last_release(s, t_0, f_0, t_1, f_1)
         f_2 = alpha_at(s, t_2)
         if k == 1 and f_2 <= f_1 and t_0 >= s.low:

@@ -31,7 +31,7 @@ from lcpstep.events.rows.held import constrain, solve_held
 from lcpstep.kernels.quadratic import accumulation, first_zero
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import clear, copy, copy_indices, largest
-from lcpstep.pointers import abs, max, min
+from lcpstep.pointers import abs, max
 
 LEFT_OVER = 1e3  # times the tolerance of a velocity, as masses and restitutions of a collapse take them apart
 FADED = 1e-6  # of the speed of a hop: what those have lost that others still take something of
@@ -70,7 +70,7 @@ def time_left(s: Contacts, c: int) -> float:
     if abs(alpha) * s.since[c] <= noise:  # an inelastic collapse
         return 0.0 if slow and u * s.since[c] <= tolerance and not awaits(s, c) else -1.0
     T = accumulation(u, alpha, r) if low else -1.0
-    return -1.0 if not low or s.t0 + T > min(s.high, s.t_end) or interrupted(s, c, T) else T
+    return -1.0 if not low or s.t0 + T > s.border() or interrupted(s, c, T) else T
 
 
 def is_left_over(s: Contacts, c: int, u: float, alpha: float) -> bool:

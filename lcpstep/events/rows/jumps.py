@@ -18,7 +18,6 @@ from lcpstep.events.rows.equations import (
     velocity_of,
 )
 from lcpstep.events.rows.state import Rows
-from lcpstep.kernels.clock import NUDGE
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.sudden import JUMP, MORE, SUDDEN, coarseness
 from lcpstep.kernels.vectors import add
@@ -109,7 +108,7 @@ def go_beyond(s: Rows, y: Doubles) -> bool:
     if s.low != s.jump:
         return False
     v = after(y, s.n_q)
-    add(y, 2.0 * max(NUDGE * max(abs(s.t0), s.scale), coarseness(y, v, s.n_q)), v, s.n_q)
+    add(y, 2.0 * max(s.margin(s.t0), coarseness(y, v, s.n_q)), v, s.n_q)
     return True
 
 

@@ -12,7 +12,7 @@ from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles, abs, after, max
 from lcpstep.stepping.pieces.codes import CORNER, FINISHED, GROUND, LCP_FAILED, NOT_FINITE, OPEN
 from lcpstep.stepping.pieces.impulses import strike, zero_speeds
-from lcpstep.stepping.pieces.keep import keep
+from lcpstep.stepping.pieces.keep import keep_event
 from lcpstep.stepping.pieces.magnitudes import speed_terms, velocity_of, with_terms
 from lcpstep.stepping.pieces.smooth import push_held, renew_forces, renew_mobility
 from lcpstep.stepping.pieces.state import Plan, Work
@@ -40,8 +40,7 @@ def event(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
         zero_speeds(w, w.v_try)
     if not renew_forces(m, plan, w, now):
         return NOT_FINITE
-    if w.record.keeps_event(now):
-        keep(w, now, 1.0)
+    keep_event(w, now)
     return FINISHED
 
 

@@ -11,12 +11,11 @@ from lcpstep.kernels.dynamics import external_force, moves, obstacle
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.one_row import keep_one
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
-from lcpstep.pointers import abs, inf
+from lcpstep.pointers import inf
 from lcpstep.stepping.pieces.carried import PUT_BACK
-from lcpstep.stepping.pieces.codes import SAME_TIME
 from lcpstep.stepping.pieces.keep import keep
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.pieces.times import within
+from lcpstep.stepping.pieces.times import untold, within
 
 
 def glide(m: Model, plan: Plan, w: Work, t0: float, first: int, last: int) -> None:
@@ -56,7 +55,7 @@ def glide(m: Model, plan: Plan, w: Work, t0: float, first: int, last: int) -> No
                 half = 0.5 * ((G * a - 0.5 * (s + s_next)) + (s_next - s) / 6.0)
             if half - half != 0.0:
                 break
-            latest = h + SAME_TIME * (abs(t) + h)
+            latest = h + untold(t, h)
             if may_reach_zero(g, u, half, latest) and first_zero(g, u, half) <= latest:
                 break
             if moving:

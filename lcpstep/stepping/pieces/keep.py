@@ -72,3 +72,9 @@ def keep(w: Work, t: float, jump: float) -> None:
         jump = max(jump, w.record.mode[w.record.row - 1])
     w.record.take_back(t, w.impulse)
     w.record.keep(t, jump, w.q, w.v, w.impulse)
+
+
+def keep_event(w: Work, t: float) -> None:
+    """Keep the state after an event at time t, if these are kept."""
+    if w.record.keeps_event(t):
+        keep(w, t, 1.0)

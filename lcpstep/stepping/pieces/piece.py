@@ -15,16 +15,7 @@ from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.together import gap_rounding
 from lcpstep.kernels.vectors import copy, distance, product
 from lcpstep.pointers import abs, after, max, min
-from lcpstep.stepping.pieces.codes import (
-    CLOSED,
-    FINISHED,
-    LCP_FAILED,
-    LEFT,
-    NOBODY,
-    NOT_FINITE,
-    OPEN,
-    SAME_TIME,
-)
+from lcpstep.stepping.pieces.codes import CLOSED, FINISHED, LCP_FAILED, LEFT, NOBODY, NOT_FINITE, OPEN
 from lcpstep.stepping.pieces.contact_forces import hold, land
 from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
 from lcpstep.stepping.pieces.smooth import (
@@ -39,7 +30,7 @@ from lcpstep.stepping.pieces.smooth import (
 )
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import stick
-from lcpstep.stepping.pieces.times import driven_by, within
+from lcpstep.stepping.pieces.times import driven_by, untold, within
 
 POLISHING = 8  # Newton iterations onto a gap that is no quadratic
 BRIEF = 1.0 / 8.0  # of a piece: hops that last no longer obey the acceleration at their beginning
@@ -152,7 +143,7 @@ def first_contact(plan: Plan, w: Work, rest: float, t_end: float, past: float, b
 
     Of those that do so after contact `but` does, at `past`; none: NOBODY and a time before the base.
     """
-    found, tau = NOBODY, rest + SAME_TIME * (abs(t_end) + plan.h)
+    found, tau = NOBODY, rest + untold(t_end, plan.h)
     for c in range(w.n_c):
         if w.status[c] == OPEN and may_reach_zero(w.gap[c], w.rate[c], w.half[c], tau):
             zero = first_zero(w.gap[c], w.rate[c], w.half[c])
@@ -222,7 +213,7 @@ def between(m: Model, w: Work, c: int, t: float, low: float, high: float) -> flo
 def move(m: Model, plan: Plan, w: Work, t: float, tau: float, to_end: bool) -> int:
     """Go on to w.sigma + tau; contacts that were closed all the way stay on the surface."""
     now = t + w.sigma
-    end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
+    end = now + tau - untold(now + tau, plan.h)  # to rounding: states there come after the impact
     wanted = w.record.awaited() < end
     if wanted and plan.plain:
         keep_times(w, now, end)

@@ -15,7 +15,7 @@ from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles
 from lcpstep.stepping.pieces.codes import CLOSED, GROUND, LEFT, OPEN, WHOLE
 from lcpstep.stepping.pieces.contact_forces import hold
-from lcpstep.stepping.pieces.keep import keep
+from lcpstep.stepping.pieces.keep import keep_event
 from lcpstep.stepping.pieces.polynomial import Polynomial, acceleration, biases
 from lcpstep.stepping.pieces.scan import SOON
 from lcpstep.stepping.pieces.smooth import free_acceleration, respond
@@ -86,6 +86,6 @@ def decide(m: Model, plan: Plan, w: Work, at: float, q: Doubles, v: Doubles, t: 
         return False
     for c in range(n_c):
         w.half[c] = 0.5 * (product(w.G, w.a, c, w.n_q) + w.bias[c]) if w.status[c] == OPEN else 0.0
-    if w.record.event > before and w.record.keeps_event(t):
-        keep(w, t, 1.0)
+    if w.record.event > before:
+        keep_event(w, t)
     return True

@@ -21,12 +21,11 @@ from lcpstep.stepping.pieces.codes import (
     LEFT,
     NOBODY,
     NOT_FINITE,
-    SAME_TIME,
 )
 from lcpstep.stepping.pieces.event import straighten_struck, touches
 from lcpstep.stepping.pieces.impulses import strike
 from lcpstep.stepping.pieces.jumps import breaks
-from lcpstep.stepping.pieces.keep import keep
+from lcpstep.stepping.pieces.keep import keep_event
 from lcpstep.stepping.pieces.loop import Steps
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, velocity_of
 from lcpstep.stepping.pieces.piece import penetrates
@@ -52,7 +51,7 @@ from lcpstep.stepping.pieces.smooth import (
 )
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import idle, release
-from lcpstep.stepping.pieces.times import at_corner, within
+from lcpstep.stepping.pieces.times import at_corner, untold, within
 
 SLOW = 1e-3  # of a step: a touch is no event twice within so short a time
 
@@ -72,7 +71,7 @@ class PolynomialSteps(Steps):
         """Accelerations, and which contacts are closed."""
         now = t + self.w.sigma
         # Of so short a rest positions cannot tell the ends apart
-        if self.w.end - self.w.sigma <= SAME_TIME * (abs(now) + self.plan.h):
+        if self.w.end - self.w.sigma <= untold(now, self.plan.h):
             self.w.sigma = self.w.end
             return AGAIN
         length = min(self.w.end - self.w.sigma, self.plan.longest)
@@ -140,14 +139,13 @@ def lose_force(m: Model, plan: Plan, w: Work, t: float, c: int) -> None:
         return
     release(m, plan, w, c, t, 0.0)
     w.grounded[c] = LEFT
-    if w.record.keeps_event(t):
-        keep(w, t, 1.0)
+    keep_event(w, t)
 
 
 def follow(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, ends: bool) -> int:
     """Go on to w.sigma + tau along the polynomial."""
     now = t + w.sigma
-    end = now + tau - SAME_TIME * (abs(now + tau) + plan.h)  # to rounding: states there come after the impact
+    end = now + tau - untold(now + tau, plan.h)  # to rounding: states there come after the impact
     while w.record.awaited() < end:
         state_at(m, plan, w, z, now, max(0.0, w.record.awaited() - now))
         settle_state(m, plan, w, w.record.awaited(), z.q)
@@ -223,6 +221,5 @@ def land(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
         idle(w)
         return LCP_FAILED if n_s < 0 else FINISHED
     straighten_struck(m, w, t, n_s)  # rounding of the velocity must not be larger than that of small hops
-    if w.record.keeps_event(t):
-        keep(w, t, 1.0)
+    keep_event(w, t)
     return FINISHED

@@ -17,7 +17,7 @@ from lcpstep.model import ends
 from lcpstep.stepping.extent import extent, is_stiff
 from lcpstep.stepping.pieces.carried import displaced
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.steps import MARGIN, inverse
+from lcpstep.stepping.steps import MARGIN, implicit_mass, inverse
 from lcpstep.turns import turns
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def implicit(m: Model, stiff: bool, method: Located, h: float) -> Array:
     if not (stiff and method.order == 2):
         return m.arrays["M_inverse"]
     M, C, K = (m.arrays[name] for name in ("M", "C", "K"))
-    return inverse(M + 0.5 * h * C + 0.25 * h**2 * K)
+    return inverse(implicit_mass(M, C, K, 0.5 * h))
 
 
 def size(scene: Scene, m: Model, method: Located, piece: float, pushes: Array) -> float:

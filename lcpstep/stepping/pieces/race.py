@@ -16,12 +16,12 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
 from lcpstep.kernels.roundings import NOISE
 from lcpstep.pointers import abs, inf, max
-from lcpstep.stepping.pieces.codes import GROUND, IMPACT, SAME_TIME
+from lcpstep.stepping.pieces.codes import GROUND, IMPACT
 from lcpstep.stepping.pieces.impulses import SMALL
 from lcpstep.stepping.pieces.sequences import SHORT
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import COLLAPSE
-from lcpstep.stepping.pieces.times import look_one, move_gap, move_one
+from lcpstep.stepping.pieces.times import look_one, move_gap, move_one, untold
 
 
 def race(m: Model, plan: Plan, w: Work, t: float, sigma: float, end: float, most: int) -> int:
@@ -63,7 +63,7 @@ def look_at(w: Work, tau: float) -> None:
 
 def keep_times(plan: Plan, w: Work, t: float, now: float, tau: float) -> None:
     """Keep the states asked for from now on before the impact at tau; to rounding, those there come after it."""
-    before = t + tau - SAME_TIME * (abs(t + tau) + plan.h)
+    before = t + tau - untold(t + tau, plan.h)
     while w.record.awaited() < before:
         look_at(w, max(now, w.record.awaited() - t))
         w.record.keep_awaited(w.q_try, w.v_try, w.impulse)

@@ -35,7 +35,7 @@ from lcpstep.stepping.pieces.codes import (
     STOPS,
 )
 from lcpstep.stepping.pieces.impulses import touch
-from lcpstep.stepping.pieces.keep import keep
+from lcpstep.stepping.pieces.keep import keep_event
 from lcpstep.stepping.pieces.magnitudes import speed_terms
 from lcpstep.stepping.pieces.refine import NONE
 from lcpstep.stepping.pieces.smooth import (
@@ -140,6 +140,5 @@ def begin_again(m: Model, plan: Plan, w: Work, t: float) -> int:
         w.record.keep_awaited(w.q_try, w.v, w.impulse)
     if not renew_forces(m, plan, w, t):
         return NOT_FINITE
-    if w.record.keeps_event(t):
-        keep(w, t, 1.0)
+    keep_event(w, t)
     return FINISHED

@@ -16,7 +16,7 @@ import cython
 
 from lcpstep.kernels.acceleration import factor_mass, response
 from lcpstep.kernels.biases import bias
-from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, total_force
+from lcpstep.kernels.dynamics import external_force, gap_rates, gaps, implicit_mass, total_force
 from lcpstep.kernels.linear import grow_factor, invert_matrix, solve_factored, uncouple
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, copy, filled, product, product_at, product_between
@@ -37,12 +37,10 @@ def invert(m: Model, plan: Plan, w: Work, rest: float, place: int) -> None:
         after(plan.AG, place * n_c * n),
         after(plan.WA, place * n_c * n_c),
     )
+    implicit_mass(m, 0.5 * rest, plan.A)
     if n == 1:
-        A = m.M[0] + 0.5 * rest * m.C[0] + 0.25 * rest * rest * m.K[0]
-        inverse[0] = 1.0 / A
+        inverse[0] = 1.0 / plan.A[0]
     else:
-        for i in range(n * n):
-            plan.A[i] = m.M[i] + 0.5 * rest * m.C[i] + 0.25 * rest * rest * m.K[i]
         invert_matrix(plan.A, plan.pivots, 1.0, plan.unit, inverse, n)
     if plan.constant:
         answer_forces(inverse, m.G, AG, WA, n, n_c)
@@ -104,15 +102,10 @@ def renew_forces(m: Model, plan: Plan, w: Work, t: float) -> bool:
     return True
 
 
-def mobility(m: Model, w: Work, c: int) -> None:
-    """M^-1 G_c^T at the Jacobian w.G, into row c of w.MG; for a changing mass matrix by the factors in w.M."""
-    response(m, w.M, w.jolt, after(w.G, c * w.n_q), after(w.MG, c * w.n_q))
-
-
 def respond(m: Model, w: Work) -> None:
-    """M^-1 G^T and the Delassus matrix at the Jacobian w.G."""
+    """M^-1 G^T and the Delassus matrix at the Jacobian w.G; for a changing mass matrix by the factors in w.M."""
     for c in range(w.n_c):
-        mobility(m, w, c)
+        response(m, w.M, w.jolt, after(w.G, c * w.n_q), after(w.MG, c * w.n_q))
         n_k = filled(after(w.MG, c * w.n_q), w.n_q, w.moved)
         for d in range(w.n_c):
             w.W[d * w.n_c + c] = product_at(w.G, after(w.MG, c * w.n_q), d, w.n_q, w.moved, n_k)

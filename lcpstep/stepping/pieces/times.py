@@ -6,6 +6,7 @@ import cython
 
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.pointers import abs, max, min
+from lcpstep.stepping.pieces.codes import SAME_TIME
 from lcpstep.stepping.pieces.state import Plan, Work
 
 
@@ -17,6 +18,11 @@ def within(w: Work, t: float) -> float:
 def at_corner(plan: Plan, w: Work, t: float) -> bool:
     """Whether a time is that of the next corner, to rounding; then its impacts are those of the corner."""
     return bool(not plan.plain and t >= w.high - 2.0 * w.margin)
+
+
+def untold(t: float, h: float) -> float:
+    """By what times near t are one to rounding, in steps of h."""
+    return float(SAME_TIME * (abs(t) + h))
 
 
 def driven_by(w: Work, c: int, t: float) -> float:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.kernels.dynamics import gap_rates
+from lcpstep.kernels.dynamics import gap_rates, implicit_mass
 from lcpstep.kernels.linear import invert_matrix
 from lcpstep.kernels.model import Model
 from lcpstep.pointers import after
@@ -55,8 +55,7 @@ def respond(linear: bool, plan: Plan, s: State, c: Rows, n_k: int) -> None:
 def refit(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
     """The matrices of a linear scene for steps of the size that the plan now has; see `Plan`."""
     n, x = s.n_q, plan.h * plan.theta
-    for i in range(n * n):
-        s.A[i] = m.M[i] + x * m.C[i] + x * x * m.K[i]
+    implicit_mass(m, x, s.A)
     invert_matrix(s.A, s.pivots, plan.h, s.R, plan.A_f, n)
     for i in range(n):
         for j in range(n):
