@@ -105,7 +105,7 @@ class Attempts(Parts):
         for c in range(self.w.n_c):
             if self.one.status[c] == CLOSED:
                 continue
-            g, u, a = self.saved.gap[c], self.saved.rate[c], self.one.half[c]
+            g, u, a = self.saved.gap[c], self.saved.velocity[c], self.one.half[c]
             begins = g if g != 0.0 else self.w.gap_try[c]
             lifted = sunk * largest(after(self.w.G, c * self.w.n_q), 0.0, self.w.n_q)
             lifted += driven_by(self.w, c, self.now())

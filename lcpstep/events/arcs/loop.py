@@ -30,7 +30,7 @@ from lcpstep.events.arcs.motion import (
     state_at,
 )
 from lcpstep.events.codes import REVERSE, SLIP, STAYS_CLOSED, STICK_TANGENT
-from lcpstep.events.flight.contact import SLACK
+from lcpstep.events.flight.contact import ROOM
 from lcpstep.events.rows.contacts import STILL
 from lcpstep.kernels.course import DUE, Events
 from lcpstep.kernels.quadratic import first_zero
@@ -43,7 +43,7 @@ class Course(Events):
     """Arcs of one contact that stays closed; s : Arc."""
 
     def __init__(self, s: Arc) -> None:
-        super().__init__(s, SLACK)
+        super().__init__(s, ROOM)
         self.s = s
 
     def stage(self, goal: int) -> int:

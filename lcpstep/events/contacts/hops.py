@@ -173,11 +173,8 @@ def eighth_power(d0: float, d1: float, d2: float, d3: float, most: float) -> flo
 
     Coefficients fall like powers of one ratio, which is the largest that those of x^2, x^3 and x^4 show.
     """
-    d01, d12, d23 = (
-        (d1 - d0) / (NODE_1 - NODE_0),
-        (d2 - d1) / (NODE_2 - NODE_1),
-        (d3 - d2) / (NODE_3 - NODE_2),
-    )
+    d01, d12 = (d1 - d0) / (NODE_1 - NODE_0), (d2 - d1) / (NODE_2 - NODE_1)
+    d23 = (d3 - d2) / (NODE_3 - NODE_2)
     d02, d13 = (d12 - d01) / (NODE_2 - NODE_0), (d23 - d12) / (NODE_3 - NODE_1)
     c4 = (d13 - d02) / (NODE_3 - NODE_0)
     c3 = d02 - c4 * (NODE_0 + NODE_1 + NODE_2)

@@ -122,12 +122,8 @@ class Rubbing(RungeKutta):
         self.rows.q, self.rows.v, self.rows.rough = self.y, after(self.y, self.n_q), self.coefficients.rough
         self.rows.mu, self.rows.mu_s = self.coefficients.sliding, self.coefficients.sticking
         self.q, self.v, self.mu, self.mu_s = self.rows.q, self.rows.v, self.rows.mu, self.rows.mu_s
-        self.a_free, self.force, self.a, self.dv = (
-            self.rows.a_free,
-            self.rows.force,
-            self.rows.a,
-            self.rows.dv,
-        )
+        self.a_free, self.a = self.rows.a_free, self.rows.a
+        self.force, self.dv = self.rows.force, self.rows.dv
         self.R, self.MR, self.W = self.rows.R, self.rows.MR, self.rows.D
         self.rate, self.bias, self.shifted_rate = self.rows.rate, self.rows.bias, self.rows.near
         self.change, self.multiplier, self.effect = self.rows.change, self.rows.multiplier, self.rows.effect

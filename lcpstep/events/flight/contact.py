@@ -16,7 +16,7 @@ from __future__ import annotations
 from lcpstep.kernels.roundings import NOISE, RESOLUTION
 
 FREE, CLOSED = 0.0, 1.0  # modes
-SLACK = 4  # rows and events that one round of the loop may need
+ROOM = 4  # events that one round of the loop may note
 JUST_RELEASED = 1e-300  # a gap acceleration that is zero, on its way up
 ON_THE_SURFACE = NOISE  # a gap this small, relative to the state, is closed
 UNSEEN = 4 * RESOLUTION  # of the time: a hop this short is none

@@ -9,7 +9,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.flight.clear import WORTH, clear_until, suspect
-from lcpstep.events.flight.contact import CLOSED, JUST_RELEASED, NONE, ON_THE_SURFACE, SLACK, STRIDE, UNSEEN
+from lcpstep.events.flight.contact import CLOSED, JUST_RELEASED, NONE, ON_THE_SURFACE, ROOM, STRIDE, UNSEEN
 from lcpstep.events.flight.keep import keep, keep_event, keep_times
 from lcpstep.events.flight.modes import go_on, impact, release, settle, settle_again, turn_corner
 from lcpstep.events.flight.motion import Flight, free, on_obstacle, rebase
@@ -25,7 +25,7 @@ class Course(Events):
     """Flights and rest of one degree of freedom; s : Flight."""
 
     def __init__(self, s: Flight) -> None:
-        super().__init__(s, SLACK)
+        super().__init__(s, ROOM)
         self.s = s
 
     def stage(self, goal: int) -> int:

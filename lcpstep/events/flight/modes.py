@@ -89,7 +89,7 @@ def chatter_left(s: Flight, u: float, alpha: float) -> float:
         return NONE
     later = alpha_at(s, s.now + T)
     change = abs(later + A) + abs(alpha + A)
-    if not (later < 0.0 and change * T * s.rate <= A * tolerance):
+    if not (later < 0.0 and change * T * s.speed <= A * tolerance):
         return NONE
     return T * (1.0 + (later + A) / (3.0 * A) - s.delta * T / 3.0)
 

@@ -35,7 +35,7 @@ class Flight(Clock):
     scan, rtol, atol                     longest interval of the scan; tolerances
     clear, bend     above the first, G times the absolute position is clear of the obstacle at all times; the second
         bounds the part of the gap acceleration that comes from frame and obstacle
-    size, rate      how large the positions are of which the gap is the difference, and the velocities of what moves
+    size, speed     how large the positions are of which the gap is the difference, and the velocities of what moves
         by itself
     now, begun      the time reached; whether the state there is known to be free, closed or struck
     mode            whether the contact is FREE or CLOSED
@@ -56,7 +56,7 @@ class Flight(Clock):
     ----------
     t_span : (start, end);  corners, period : see `Clock`
     model : Model;  o : Oscillator
-    given : scan, rtol, atol, clear, bend, size and rate by name
+    given : scan, rtol, atol, clear, bend, size and speed by name
     record, tally : what is kept of the motion, and counted; none for a flight that is only asked
     """
 
@@ -86,7 +86,7 @@ class Flight(Clock):
             self.response = self.G * self.G / mass
         self.scan, self.rtol, self.atol = given["scan"], given["rtol"], given["atol"]
         self.clear, self.bend = given["clear"], given["bend"]
-        self.size, self.rate = given["size"], given["rate"]
+        self.size, self.speed = given["size"], given["speed"]
         self.bracket, self.turn = Bracket(), Turn()
         self.state, self.space = np.zeros((2, 1)), np.zeros(4)
         self.q, self.v = doubles(self.state[0]), doubles(self.state[1])

@@ -47,13 +47,13 @@ def bounds_of_motion(scene: Scene, m: Model, o: Any) -> dict[str, float]:
     samples = seen(scene, m) if m.frame.given or m.motion.given else None
     given = {"scan": scan_interval(scene, m, rate, samples)}
     if scene.n_c == 0:
-        return given | {"clear": math.inf, "bend": 0.0, "size": 0.0, "rate": 0.0}
+        return given | {"clear": math.inf, "bend": 0.0, "size": 0.0, "speed": 0.0}
     far = reach(scene, m, samples)
     G, offset = float(m.arrays["G"][0, 0]), float(m.arrays["offset"][0])
     forced = abs(G) * math.hypot(o.X, o.Y)
     return given | {
         "clear": far.clear, "bend": far.bend,
-        "size": far.size + abs(offset) + forced, "rate": far.speed + forced * abs(o.Omega),
+        "size": far.size + abs(offset) + forced, "speed": far.speed + forced * abs(o.Omega),
     }  # fmt: skip
 
 

@@ -97,7 +97,7 @@ def choose_resting(w: Work) -> int:
     n_k = 0
     for c in range(w.n_c):
         closed = w.status[c] == CLOSED
-        if closed or (w.touching and w.grounded[c] == GROUND and w.rate[c] == 0.0):
+        if closed or (w.touching and w.grounded[c] == GROUND and w.velocity[c] == 0.0):
             w.chosen[n_k] = c
             w.z[n_k] = w.force_now[c] if closed else 0.0
             w.b[n_k] = w.alpha[c]

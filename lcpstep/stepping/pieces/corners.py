@@ -64,11 +64,11 @@ def choose_jumping(m: Model, plan: Plan, w: Work, t: float) -> int:
     gap_rates(m, within(w, t), w.q, w.v, w.G, w.gap_t)
     n_s = 0
     for c in range(w.n_c):
-        before, later = w.rate[c], velocity_of(w, c)
+        before, later = w.velocity[c], velocity_of(w, c)
         size = abs(w.gap_t[c]) + size_of_product(w.G, w.v, c, w.n_q)
         w.before[c] = before
         if abs(later - before) > JUMP * (size + abs(before)):
-            w.rate[c] = later
+            w.velocity[c] = later
             near = plan.slack + 4.0 * w.margin * (abs(before) + abs(later))
             if w.status[c] == CLOSED or (w.gap[c] <= near and min(before, later) < 0.0):
                 w.chosen[n_s] = c

@@ -50,10 +50,10 @@ def touches(m: Model, plan: Plan, w: Work, c: int, t: float, slow: float) -> boo
     Or by no more than rounding.
     """
     still = NOISE * speed_terms(plan, w, c)
-    if not w.rate[c] >= -still:
+    if not w.velocity[c] >= -still:
         return False
     w.gap[c], w.grounded[c] = 0.0, GROUND
-    if w.rate[c] <= still or w.rate[c] <= slow:
+    if w.velocity[c] <= still or w.velocity[c] <= slow:
         stick(w, c, t)
         count_turn(m, plan, w, c, 0.0, False)
     idle(w)
@@ -74,15 +74,15 @@ def straighten(m: Model, w: Work, d: int) -> None:
     Without the latter the rounding of the Delassus matrix acts the same way at every impact: at a mass ratio of 1e12
     it turns the motion by a ten-thousandth. Gap velocities finer than the velocities resolve stay as they are.
     """
-    error = w.rate[d] - product(m.G, w.v, d, w.n_q)
+    error = w.velocity[d] - product(m.G, w.v, d, w.n_q)
     if error == 0.0 or not w.W[d * w.n_c + d] > 0.0:
         return
     lift(w, w.v, d, error)
     for c in range(w.n_c):
         if w.status[c] == OPEN and w.grounded[c] == 0:
             change = w.W[c * w.n_c + d] * error / w.W[d * w.n_c + d]
-            if abs(change) <= NOISE * abs(w.rate[c]):
-                w.rate[c] += change
+            if abs(change) <= NOISE * abs(w.velocity[c]):
+                w.velocity[c] += change
 
 
 def straighten_all(m: Model, w: Work, n_s: int) -> None:
@@ -92,7 +92,7 @@ def straighten_all(m: Model, w: Work, n_s: int) -> None:
         worst = size = 0.0
         for k in range(n_s):
             d = w.chosen[k]
-            w.residual[k] = height(m, w, d) if level == 0 else product(m.G, w.v, d, w.n_q) - w.rate[d]
+            w.residual[k] = height(m, w, d) if level == 0 else product(m.G, w.v, d, w.n_q) - w.velocity[d]
             worst = max(worst, abs(w.residual[k]))
             for i in range(w.n_q):
                 size = max(size, abs(m.G[d * w.n_q + i] * x[i]))
@@ -113,7 +113,7 @@ def straighten_struck(m: Model, w: Work, t: float, n_s: int) -> None:
         put_right(w, w.q, n_s)
     for k in range(n_s):
         d = w.chosen[k]
-        w.residual[k] = velocity_of(w, d) - w.rate[d]
+        w.residual[k] = velocity_of(w, d) - w.velocity[d]
     put_right(w, w.v, n_s)
 
 
@@ -145,5 +145,5 @@ def remeasure(m: Model, plan: Plan, w: Work) -> None:
             u, speed = with_terms(w, m.G, c, w.v, 0.0)
             if g > plan.slack and abs(g - w.gap[c]) > NOISE * place:
                 w.gap[c] = g
-            if abs(u - w.rate[c]) > NOISE * speed:
-                w.rate[c] = u
+            if abs(u - w.velocity[c]) > NOISE * speed:
+                w.velocity[c] = u

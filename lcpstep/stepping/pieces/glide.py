@@ -29,7 +29,7 @@ def glide(m: Model, plan: Plan, w: Work, t0: float, first: int, last: int) -> No
     g, u, bent, G, offset, s = inf, 0.0, 0.0, 0.0, 0.0, 0.0
     contact, moving = w.n_c > 0, moves(m)
     if contact:
-        g, u, bent, G, offset = w.gap[0], w.rate[0], w.half[0], m.G[0], m.offset[0]
+        g, u, bent, G, offset = w.gap[0], w.velocity[0], w.half[0], m.G[0], m.offset[0]
         if moving:
             obstacle(m, within(w, t0 + h * (w.steps - first)), w.q, w.v)
             s = m.motion_now[2]
@@ -84,7 +84,7 @@ def glide(m: Model, plan: Plan, w: Work, t0: float, first: int, last: int) -> No
             kept = now
     w.q[0], w.v[0], w.force[0] = q, v, f
     if contact:
-        w.gap[0], w.rate[0], w.half[0] = g, u, bent
+        w.gap[0], w.velocity[0], w.half[0] = g, u, bent
         if k > start:
             w.turned[0], w.sigma = -h, 0.0  # no event for a step at least
             w.end_u[0], w.end_s[0] = G * v - u, s

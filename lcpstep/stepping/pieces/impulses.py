@@ -38,7 +38,7 @@ from lcpstep.stepping.pieces.sequences import (
     choose_collapsing,
     choose_connected,
     is_over,
-    measure_rates,
+    measure_velocities,
     note_hit,
 )
 from lcpstep.stepping.pieces.smooth import ON_THE_SURFACE
@@ -60,8 +60,8 @@ def strike(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     if n_s >= 0 or first == CORNER:
         return n_s
     for c in range(w.n_c):
-        w.rate[c], w.fall[c] = velocity_of(w, c), 0.0
-    if w.rate[first] < 0.0:
+        w.velocity[c], w.fall[c] = velocity_of(w, c), 0.0
+    if w.velocity[first] < 0.0:
         return answer(m, plan, w, first, t, True)
     touch(w, first)
     return 0
@@ -69,7 +69,7 @@ def strike(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
 
 def touch(w: Work, c: int) -> None:
     """Contact c is at rest on its obstacle, and the forces decide what becomes of it."""
-    w.gap[c] = w.rate[c] = 0.0
+    w.gap[c] = w.velocity[c] = 0.0
     w.grounded[c], w.touching = GROUND, True
 
 
@@ -79,7 +79,7 @@ def answer(m: Model, plan: Plan, w: Work, first: int, t: float, drifted: bool) -
     Drifted, the second attempt: closed contacts have speeds, as they have at a corner, and none rebounds.
     """
     if first != CORNER and w.close_hits[first] >= MANY_AT_ONCE:
-        measure_rates(w)
+        measure_velocities(w)
     n_s = choose_jumping(m, plan, w, t) if first == CORNER else choose_struck(m, plan, w, first, t)
     if n_s == 0:
         return 0
@@ -98,9 +98,9 @@ def answer(m: Model, plan: Plan, w: Work, first: int, t: float, drifted: bool) -
                 w.plastic[c] = 1 if drifted or is_over(m, plan, w, c, n_s == 1, t) else 0
                 collapsed = collapsed or (w.plastic[c] == 1 and w.close_hits[c] >= IN_A_ROW)
             r = 0.0 if w.plastic[c] == 1 else m.restitution[c]
-            w.b[k] = w.rate[c] + r * min(w.before[c], 0.0)
+            w.b[k] = w.velocity[c] + r * min(w.before[c], 0.0)
         elif drifted or first == CORNER:
-            w.b[k] = w.rate[c]
+            w.b[k] = w.velocity[c]
     together = choose_collapsing(plan, w, first, n_s) if collapsed else n_s
     if together > n_s and solve_chosen(m, plan, w, w.W, INERTIA, together, NONE):
         n_s = together
@@ -127,17 +127,17 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     for c in range(w.n_c):
         # A gap within the slack may still be open: its speed is not yet the one that it will close with
         closing = c == first or (
-            w.gap[c] <= plan.slack and abs(w.rate[c] + w.fall[c]) <= SAME_SPEED * w.fall[c]
+            w.gap[c] <= plan.slack and abs(w.velocity[c] + w.fall[c]) <= SAME_SPEED * w.fall[c]
         )
         # Rounding must not add up over chattering: it strikes with the speed that it left with
-        if w.fall[c] > 0.0 and w.rate[c] < 0.0 and closing:
-            w.rate[c] = -w.fall[c]
-        w.before[c], w.p[c] = w.rate[c], 0.0  # p marks: 1 where contact c strikes with the first
+        if w.fall[c] > 0.0 and w.velocity[c] < 0.0 and closing:
+            w.velocity[c] = -w.fall[c]
+        w.before[c], w.p[c] = w.velocity[c], 0.0  # p marks: 1 where contact c strikes with the first
     w.chosen[0] = first
     if w.n_c == 1:
         w.gap[first], w.grounded[first] = 0.0, GROUND
         return 1
-    u, n_s, k = w.rate[first], 1, 0
+    u, n_s, k = w.velocity[first], 1, 0
     touched = w.grounded[first] >= GROUND and w.last[first] < 0.0
     since = w.sigma - w.last[first] if w.last[first] >= 0.0 else inf
     untold = rounding_of_time(w, t)
@@ -146,13 +146,14 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
     while k < n_s:
         for c in range(w.n_c):
             # Beside obstacles that move gaps tell less than a time does, and than that in which the first is crossed
-            missed, passed = untold * abs(w.rate[c]), min(crossing * abs(w.rate[c]), CROSSED * plan.slack)
+            missed = untold * abs(w.velocity[c])
+            passed = min(crossing * abs(w.velocity[c]), CROSSED * plan.slack)
             # the slack knows nothing of the lengths within a curved gap, whose rounding may be more
             met = w.gap[c] <= plan.slack + missed + passed or not m.flat
-            if met and w.p[c] == 0.0 and c != first and w.status[c] == OPEN and w.rate[c] < 0.0:
+            if met and w.p[c] == 0.0 and c != first and w.status[c] == OPEN and w.velocity[c] < 0.0:
                 near = w.gap[c] <= plan.slack + missed
                 pushed = touched and w.grounded[c] >= GROUND and w.last[c] < 0.0
-                alike = abs(w.rate[c] - u) <= SAME_SPEED * abs(u)
+                alike = abs(w.velocity[c] - u) <= SAME_SPEED * abs(u)
                 if (near and (pushed or alike)) or tied(m, plan, w, w.chosen[k], c, missed + passed):
                     w.chosen[n_s], w.p[c] = c, 1.0
                     w.gap[c], w.grounded[c] = 0.0, GROUND
@@ -184,7 +185,7 @@ def tied(m: Model, plan: Plan, w: Work, d: int, c: int, missed: float) -> bool:
     if w.gap[c] > unknown:
         return False
     W, n, r = w.W, w.n_c, m.restitution
-    return order_matters(W[d * n + d], W[c * n + c], W[d * n + c], r[d], r[c], w.rate[d], w.rate[c])
+    return order_matters(W[d * n + d], W[c * n + c], W[d * n + c], r[d], r[c], w.velocity[d], w.velocity[c])
 
 
 def rounding_of_gap(m: Model, plan: Plan, w: Work, c: int) -> float:
@@ -234,9 +235,9 @@ def push(plan: Plan, w: Work, d: int, p: float) -> None:
     for c in range(w.n_c):
         change = w.W[c * w.n_c + d] * p
         if change != 0.0:
-            w.rate[c] += change
+            w.velocity[c] += change
             w.fall[c] = 0.0
-            u = abs(w.rate[c])
+            u = abs(w.velocity[c])
             touches = u <= SMALL * abs(change) and w.gap[c] <= plan.slack
             if touches and u <= NOISE * speed_terms(plan, w, c):
                 touch(w, c)
@@ -253,15 +254,15 @@ def after_impact(m: Model, plan: Plan, w: Work, c: int, p: float, t: float) -> N
     w.impulse[c] += p
     if w.status[c] == CLOSED:
         if p > 0.0:
-            w.rate[c] = 0.0
+            w.velocity[c] = 0.0
             w.record.note(t, c, 0.0, 0.0, p, IMPACT)
-        elif w.rate[c] > NOISE * speed_terms(plan, w, c):
-            release(m, plan, w, c, t, w.rate[c])
+        elif w.velocity[c] > NOISE * speed_terms(plan, w, c):
+            release(m, plan, w, c, t, w.velocity[c])
         else:
-            w.rate[c] = 0.0
+            w.velocity[c] = 0.0
         return
     if p == 0.0:
-        if w.rate[c] < 0.0:  # by rounding, which no impulse ends
+        if w.velocity[c] < 0.0:  # by rounding, which no impulse ends
             touch(w, c)
         return
     count_turn(m, plan, w, c, before, True)
@@ -273,9 +274,9 @@ def after_impact(m: Model, plan: Plan, w: Work, c: int, p: float, t: float) -> N
         w.record.note(t + T, c, before, 0.0, p, IMPACT if r <= STOPS else ACCUMULATION)
         stick(w, c, t + T)
         return
-    w.rate[c] = -r * before if r > 0.0 else 0.0
-    w.fall[c] = w.rate[c] if plan.plain and plan.steady else 0.0
-    w.record.note(t, c, before, w.rate[c], p, IMPACT)
+    w.velocity[c] = -r * before if r > 0.0 else 0.0
+    w.fall[c] = w.velocity[c] if plan.plain and plan.steady else 0.0
+    w.record.note(t, c, before, w.velocity[c], p, IMPACT)
     if r == 0.0:
         stick(w, c, t)
     elif before == 0.0:

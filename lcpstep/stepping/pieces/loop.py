@@ -255,7 +255,7 @@ def begin_step(m: Model, plan: Plan, w: Work) -> None:
 def is_finite(w: Work) -> bool:
     """Whether state and gaps are finite, and their accelerations in the last piece."""
     known = finite(w.q, w.n_q) and finite(w.v, w.n_q)
-    return known and finite(w.gap, w.n_c) and finite(w.rate, w.n_c) and finite(w.half, w.n_c)
+    return known and finite(w.gap, w.n_c) and finite(w.velocity, w.n_c) and finite(w.half, w.n_c)
 
 
 def poses(w: Work) -> bool:
@@ -286,13 +286,12 @@ def begin_motion(m: Model, plan: Plan, w: Work, t: float) -> int:
     for c in range(w.n_c):
         if w.gap[c] <= plan.slack:
             w.gap[c], w.grounded[c] = 0.0, GROUND
-            size = (
-                abs(w.gap_t[c]) + size_of_product(w.G, w.v, c, w.n_q) + plan.h * acceleration_terms(m, w, c)
-            )
+            size = abs(w.gap_t[c]) + size_of_product(w.G, w.v, c, w.n_q)
+            size += plan.h * acceleration_terms(m, w, c)
             # What its obstacle changes its velocity by in what time is rounded by, and moved off a corner
             rounded = (plan.margin + 4.0 * RESOLUTION * abs(t)) * abs(w.bias[c])
-            if abs(w.rate[c]) <= 64 * RESOLUTION * size + rounded:
-                w.rate[c], w.status[c] = 0.0, CLOSED
+            if abs(w.velocity[c]) <= 64 * RESOLUTION * size + rounded:
+                w.velocity[c], w.status[c] = 0.0, CLOSED
                 w.closed_now += 1
     if w.record.n_times == 0:
         keep(w, t, 0.0)

@@ -67,7 +67,7 @@ def begin_piece(m: Model, plan: Plan, w: Work, t: float) -> bool:
         fitted(m, plan, w, t, w.end - w.sigma)
     for c in range(n_c):
         if w.status[c] == CLOSED:
-            w.gap[c] = w.rate[c] = w.half[c] = 0.0
+            w.gap[c] = w.velocity[c] = w.half[c] = 0.0
         elif w.grounded[c] == LEFT:
             w.half[c] = max(w.half[c], 0.0)
     return True
@@ -89,7 +89,10 @@ def flat_accelerations(m: Model, plan: Plan, w: Work, t: float) -> None:
             s, s_end = m.motion_now[c * 3 + 2], w.end_s[c]
             w.alpha[c] -= 0.5 * (s + s_end)
             w.bend[c] = (s_end - s) / 6.0
-            if from_ground(plan, w, c) and 0.0 < 2.0 * w.rate[c] < -BRIEF * (w.end - w.sigma) * w.alpha[c]:
+            if (
+                from_ground(plan, w, c)
+                and 0.0 < 2.0 * w.velocity[c] < -BRIEF * (w.end - w.sigma) * w.alpha[c]
+            ):
                 w.bend[c] = 0.5 * (s_end - s)
             w.bias[c] = -0.5 * (s + s_end)
 
@@ -113,7 +116,7 @@ def fitted(m: Model, plan: Plan, w: Work, t: float, rest: float) -> None:
         if grounded:
             w.half[c] = 0.5 * (product(w.G, w.a, c, w.n_q) + w.bias[c])
         if not grounded or comes_back(plan, w, c, rest):
-            w.half[c] = (w.gap_try[c] - w.gap[c] - rest * w.rate[c]) / (rest * rest)
+            w.half[c] = (w.gap_try[c] - w.gap[c] - rest * w.velocity[c]) / (rest * rest)
 
 
 def comes_back(plan: Plan, w: Work, c: int, rest: float) -> bool:
@@ -121,7 +124,7 @@ def comes_back(plan: Plan, w: Work, c: int, rest: float) -> bool:
 
     As where a body crosses a round obstacle from side to side. A low hop is left to the end of the piece.
     """
-    end, rise = w.gap_try[c], rest * w.rate[c]
+    end, rise = w.gap_try[c], rest * w.velocity[c]
     return end < -plan.slack and rise > -end and rise + rest * rest * w.half[c] > 0.0
 
 
@@ -145,12 +148,12 @@ def first_contact(plan: Plan, w: Work, rest: float, t_end: float, past: float, b
     """
     found, tau = NOBODY, rest + untold(t_end, plan.h)
     for c in range(w.n_c):
-        if w.status[c] == OPEN and may_reach_zero(w.gap[c], w.rate[c], w.half[c], tau):
-            zero = first_zero(w.gap[c], w.rate[c], w.half[c])
+        if w.status[c] == OPEN and may_reach_zero(w.gap[c], w.velocity[c], w.half[c], tau):
+            zero = first_zero(w.gap[c], w.velocity[c], w.half[c])
             told = min(zero, rest)  # as it was told of before
             if told < past or (told == past and c <= but):
                 continue
-            if zero < tau or (zero == 0.0 and tau == 0.0 and w.rate[c] < w.rate[found]):
+            if zero < tau or (zero == 0.0 and tau == 0.0 and w.velocity[c] < w.velocity[found]):
                 found, tau = c, zero
     return found, min(tau, rest)
 
@@ -162,7 +165,7 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
     low, high = 0.0, -1.0
     for _ in range(POLISHING):
         look(m, w, t, tau)
-        u = w.rate[c] + 2.0 * tau * w.half[c]
+        u = w.velocity[c] + 2.0 * tau * w.half[c]
         if abs(w.gap_try[c]) <= max(0.125 * plan.slack, driven_by(w, c, t)):
             return c, tau
         if w.gap_try[c] > 0.0:
@@ -187,7 +190,7 @@ def polish(m: Model, plan: Plan, w: Work, c: int, t: float, tau: float, rest: fl
         if high > tau:  # time may be too coarse for the step back from where the gap was closed
             return c, between(m, w, c, t, tau, high)
         # on a steep side the state has no place that is nearer to zero
-        falls = w.rate[c] + 2.0 * tau * w.half[c] < 0.0
+        falls = w.velocity[c] + 2.0 * tau * w.half[c] < 0.0
         near = falls and w.gap_try[c] <= gap_rounding(m, w.G, w.q, c, 0.0)
         return (c if near else NOBODY), tau
     if low > tau or not (low > 0.0 or w.gap[c] > plan.slack):
@@ -256,7 +259,7 @@ def take_back(plan: Plan, w: Work, t: float) -> bool:
     """
     taken = False
     for c in range(w.n_c):
-        if w.grounded[c] == LEFT and w.status[c] == OPEN and w.gap[c] <= plan.slack and w.rate[c] < 0.0:
+        if w.grounded[c] == LEFT and w.status[c] == OPEN and w.gap[c] <= plan.slack and w.velocity[c] < 0.0:
             stick(w, c, t)
             taken = True
     return taken

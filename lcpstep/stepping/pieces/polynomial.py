@@ -45,8 +45,8 @@ class Polynomial:
     a : (5, n_q)            accelerations of the stages
     q, v                    state last asked for
     q_stage, v_stage, q_end, v_end
-    gap_from, rate_from, gap_to, rate_to    gaps and their velocities at both ends of an interval of the scan
-    rate_now
+    gap_from, velocity_from, gap_to, velocity_to    gaps and their velocities at both ends of an interval of the scan
+    velocity_now
     pressed : (PROBES + 1, n_c)   contact forces at equal distances;  turn  in which their least is sought
 
     Parameters
@@ -63,8 +63,9 @@ class Polynomial:
         self.q, self.v, self.q_stage = x, after(x, n_q), after(x, 2 * n_q)
         self.v_stage, self.q_end, self.v_end = after(x, 3 * n_q), after(x, 4 * n_q), after(x, 5 * n_q)
         x = after(x, 6 * n_q)
-        self.gap_from, self.rate_from, self.gap_to = x, after(x, n_c), after(x, 2 * n_c)
-        self.rate_to, self.rate_now, self.pressed = after(x, 3 * n_c), after(x, 4 * n_c), after(x, 5 * n_c)
+        self.gap_from, self.velocity_from, self.gap_to = x, after(x, n_c), after(x, 2 * n_c)
+        self.velocity_to, self.velocity_now = after(x, 3 * n_c), after(x, 4 * n_c)
+        self.pressed = after(x, 5 * n_c)
         self.turn = Turn()
 
 

@@ -63,7 +63,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     if math.isfinite(scene.period):  # a callback may know the time no better than its phase
         t_scale = max(t_scale, scene.period)
     return Plan({
-        "h": h, "made_for": h, "trapezoidal": trapezoidal, "stiff": trapezoidal and stiff,
+        "h": h, "trapezoidal": trapezoidal, "stiff": trapezoidal and stiff,
         "steady": trapezoidal and not stiff and not varies(m),
         "plain": constant and not moves(m), "constant": constant, "small": n_q <= SMALL,
         "slack": NOISE * long, "per_step": method.max_per_step,

@@ -45,7 +45,7 @@ def race(m: Model, plan: Plan, w: Work, t: float, sigma: float, end: float, most
             break
         keep_times(plan, w, t, now, tau)
         hit(m, w, c, tau, end)
-        w.record.note(t + tau, c, w.before[c], w.rate[c], w.p[c], IMPACT)
+        w.record.note(t + tau, c, w.before[c], w.velocity[c], w.p[c], IMPACT)
         w.lcp_calls += 1
         done, struck, now = done + 1, c, tau
         if w.record.keeps_event(t + tau):
@@ -78,7 +78,7 @@ def keep_impact(w: Work, t: float, tau: float) -> None:
 
 def next_zero(w: Work, c: int, end: float) -> float:
     """When gap c closes, if that is before the end."""
-    g, u, half = w.gap[c], w.rate[c], w.half[c]
+    g, u, half = w.gap[c], w.velocity[c], w.half[c]
     if not may_reach_zero(g, u, half, end - w.since[c]):
         return inf
     return w.since[c] + first_zero(g, u, half)
@@ -91,7 +91,7 @@ def ordinary(m: Model, plan: Plan, w: Work, c: int, tau: float) -> bool:
     blow leaves it at rest, and closed.
     """
     h, r, s = plan.h, m.restitution[c], tau - w.since[c]
-    u = w.rate[c] + 2.0 * s * w.half[c]
+    u = w.velocity[c] + 2.0 * s * w.half[c]
     if not u < 0.0 or r == 0.0 or (w.last[c] >= 0.0 and tau - w.last[c] <= COLLAPSE * h):
         return False
     if r < 1.0 and w.half[c] < 0.0 and (r * u / w.half[c] < SHORT * h or w.hits[c] >= plan.many):
@@ -99,7 +99,7 @@ def ordinary(m: Model, plan: Plan, w: Work, c: int, tau: float) -> bool:
     for d in range(w.first_contact[c], w.last_contact[c] + 1):
         if d != c and w.W[d * w.n_c + c] != 0.0:
             s = tau - w.since[d]
-            g, v = w.gap[d] + s * (w.rate[d] + s * w.half[d]), w.rate[d] + 2.0 * s * w.half[d]
+            g, v = w.gap[d] + s * (w.velocity[d] + s * w.half[d]), w.velocity[d] + 2.0 * s * w.half[d]
             change = -(1.0 + r) * u * w.W[d * w.n_c + c] / w.W[c * w.n_c + c]
             if g <= plan.slack and (v < 0.0 or w.last[d] < 0.0 or abs(v + change) <= SMALL * abs(change)):
                 return False
@@ -110,7 +110,7 @@ def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
     """The impact of contact c at tau; position and velocity of its bodies agree with its gap to the last digit."""
     n, n_c, G, MG, W, r = w.n_q, w.n_c, w.G, w.MG, w.W, m.restitution[c]
     first, last, k = w.first_coordinate[c], w.last_coordinate[c] + 1, c * n
-    u = -w.fall[c] if w.fall[c] > 0.0 else w.rate[c] + 2.0 * (tau - w.since[c]) * w.half[c]
+    u = -w.fall[c] if w.fall[c] > 0.0 else w.velocity[c] + 2.0 * (tau - w.since[c]) * w.half[c]
     p = -(1.0 + r) * u / W[c * n_c + c]
     g, leaves = m.offset[c], r * u
     for i in range(first, last):
@@ -130,16 +130,16 @@ def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
     w.last[c] = w.since[c] = tau
     w.before[c], w.p[c] = u, p
     w.impulse[c] += p
-    w.gap[c], w.rate[c], w.fall[c] = 0.0, -r * u, -r * u
+    w.gap[c], w.velocity[c], w.fall[c] = 0.0, -r * u, -r * u
     w.next_zero[c] = next_zero(w, c, end)
     for d in range(w.first_contact[c], w.last_contact[c] + 1):
         if d != c and W[d * n_c + c] != 0.0:
             s = tau - w.since[d]
-            w.gap[d] += s * (w.rate[d] + s * w.half[d])
-            w.rate[d] += 2.0 * s * w.half[d] + W[d * n_c + c] * p
+            w.gap[d] += s * (w.velocity[d] + s * w.half[d])
+            w.velocity[d] += 2.0 * s * w.half[d] + W[d * n_c + c] * p
             change = -W[d * n_c + c] * leaves / W[c * n_c + c]
-            if abs(change) <= NOISE * abs(w.rate[d]):
-                w.rate[d] += change
+            if abs(change) <= NOISE * abs(w.velocity[d]):
+                w.velocity[d] += change
             w.since[d], w.fall[d] = tau, 0.0
             w.next_zero[d] = next_zero(w, d, end)
 

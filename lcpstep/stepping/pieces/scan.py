@@ -34,8 +34,8 @@ BRIEF = 1.0 / 32.0  # of the longest piece: the mean velocity of so short a time
 
 def gap_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> tuple[float, float]:
     """One gap and its velocity."""
-    contacts_at(m, plan, w, z, t, tau, w.gap_try, z.rate_now)
-    return w.gap_try[c], z.rate_now[c]
+    contacts_at(m, plan, w, z, t, tau, w.gap_try, z.velocity_now)
+    return w.gap_try[c], z.velocity_now[c]
 
 
 def hop_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> tuple[float, float]:
@@ -52,7 +52,7 @@ def is_low(plan: Plan, w: Work, tau: float, c: int) -> bool:
     """Whether rounding of positions is much of a gap up to tau after the base, and not of its mean velocity."""
     if not plan.exact or tau > BRIEF * plan.longest:
         return False
-    return max(w.gap[c], abs(w.rate[c]) * tau) <= LOW * plan.slack
+    return max(w.gap[c], abs(w.velocity[c]) * tau) <= LOW * plan.slack
 
 
 def height_terms(m: Model, w: Work, z: Polynomial, c: int) -> float:
@@ -69,7 +69,7 @@ def landing(
     """Where gap c, which may stay low, falls to zero in (a, b]: positive at a, or on its way up, and not at b."""
     guess = b
     if low and w.gap[c] <= 0.0 and w.half[c] < 0.0:
-        guess = min(b, -w.rate[c] / w.half[c])
+        guess = min(b, -w.velocity[c] / w.half[c])
     w.bracket.begin(a, b, True, guess)
     while w.bracket.seek(2.0 * RESOLUTION * w.bracket.x):
         if low:
@@ -82,7 +82,7 @@ def landing(
 
 def lowest(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int) -> float:
     """Where the velocity of gap c passes zero upwards in (a, b)."""
-    w.bracket.span(a, z.rate_from[c], b, z.rate_to[c])
+    w.bracket.span(a, z.velocity_from[c], b, z.velocity_to[c])
     while w.bracket.seek(4.0 * RESOLUTION * w.bracket.b):
         _g, f = gap_at(m, plan, w, z, t, w.bracket.x, c)
         w.bracket.chord(f)
@@ -95,11 +95,11 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
     if found != NOBODY or end == 0.0:
         return found, 0.0
     copy(z.gap_from, w.gap, n_c)
-    copy(z.rate_from, w.rate, n_c)
+    copy(z.velocity_from, w.velocity, n_c)
     a = 0.0
     for part in range(1, PARTS + 1):
         b = end * part / PARTS
-        contacts_at(m, plan, w, z, t, b, z.gap_to, z.rate_to)
+        contacts_at(m, plan, w, z, t, b, z.gap_to, z.velocity_to)
         for c in range(n_c):
             if not isfinite(z.gap_to[c]):
                 return NOWHERE, b
@@ -109,7 +109,7 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
         if found != NOBODY:
             return found, first
         copy(z.gap_from, z.gap_to, n_c)
-        copy(z.rate_from, z.rate_to, n_c)
+        copy(z.velocity_from, z.velocity_to, n_c)
         a = b
     return NOBODY, end
 
@@ -118,8 +118,8 @@ def closing_now(w: Work) -> int:
     """Of the open gaps that are zero and close, the fastest; NOBODY if none does."""
     found = NOBODY
     for c in range(w.n_c):
-        touches = w.status[c] == OPEN and w.gap[c] <= 0.0 and w.rate[c] < 0.0
-        if touches and (found == NOBODY or w.rate[c] < w.rate[found]):
+        touches = w.status[c] == OPEN and w.gap[c] <= 0.0 and w.velocity[c] < 0.0
+        if touches and (found == NOBODY or w.velocity[c] < w.velocity[found]):
             found = c
     return found
 
@@ -137,7 +137,7 @@ def landing_within(
             return inf  # what has been let go a moment ago
     low = b
     if z.gap_to[c] > 0.0:
-        if hop or not (z.rate_from[c] < 0.0 < z.rate_to[c]):
+        if hop or not (z.velocity_from[c] < 0.0 < z.velocity_to[c]):
             return inf
         low = lowest(m, plan, w, z, t, a, b, c)
         g, _ = gap_at(m, plan, w, z, t, low, c)
@@ -146,7 +146,7 @@ def landing_within(
         if g >= -RESOLUTION * height_terms(m, w, z, c):  # a touch
             return low
     start = max(a, SOON * end) if w.grounded[c] == LEFT else a
-    if hop and start == 0.0 and w.rate[c] <= 0.0:
+    if hop and start == 0.0 and w.velocity[c] <= 0.0:
         return 0.0
     return landing(m, plan, w, z, t, start, low, c, fine)
 

@@ -29,7 +29,7 @@ FINE = 1e-3  # of its terms: a speed below it may be finer than velocities resol
 MANY_AT_ONCE = 64  # impacts of a contact at an instant: their rounding is no longer that of a few terms
 
 
-def measure_rates(w: Work) -> None:
+def measure_velocities(w: Work) -> None:
     """Gap velocities of open contacts from v, where those carried from impact to impact have drifted off it.
 
     There are more gaps than coordinates: velocities that none of the bodies has would feed energy to impact after
@@ -38,8 +38,8 @@ def measure_rates(w: Work) -> None:
     for c in range(w.n_c):
         u, size = with_terms(w, w.G, c, w.v, w.gap_t[c])
         fine = NOISE if abs(u) <= FINE * size else 0.0
-        if w.status[c] == OPEN and abs(u - w.rate[c]) > fine * size:
-            w.rate[c], w.fall[c] = u, 0.0
+        if w.status[c] == OPEN and abs(u - w.velocity[c]) > fine * size:
+            w.velocity[c], w.fall[c] = u, 0.0
 
 
 def at_this_instant(plan: Plan, w: Work, c: int) -> bool:
@@ -75,10 +75,10 @@ def choose_collapsing(plan: Plan, w: Work, first: int, n_s: int) -> int:
     clear(w.p, n_c)
     for k in range(n_s):
         w.p[w.chosen[k]] = 1.0  # chosen already
-    known, u, W = n_s, w.rate[first], w.W[first * n_c + first]
+    known, u, W = n_s, w.velocity[first], w.W[first * n_c + first]
     for c in range(n_c):
         row = at_this_instant(plan, w, c) and w.close_hits[c] >= IN_A_ROW
-        slow = w.rate[c] * w.rate[c] * W <= AS_SLOW * u * u * w.W[c * n_c + c]
+        slow = w.velocity[c] * w.velocity[c] * W <= AS_SLOW * u * u * w.W[c * n_c + c]
         if w.status[c] == OPEN and w.p[c] == 0.0 and row and slow:
             w.chosen[n_s] = c
             n_s += 1
@@ -89,7 +89,7 @@ def choose_collapsing(plan: Plan, w: Work, first: int, n_s: int) -> int:
         w.z[k] = w.b[k] = 0.0
         w.plastic[c] = 1 if w.status[c] == OPEN else 0
         if w.status[c] == OPEN:
-            w.b[k] = w.rate[c]
+            w.b[k] = w.velocity[c]
     for k in range(n_s):
         w.p[w.chosen[k]] = 0.0
     return n_s
@@ -112,11 +112,11 @@ def is_over(m: Model, plan: Plan, w: Work, c: int, alone: bool, t: float) -> boo
     if r == 1.0 or r == 0.0:
         return False
     hits = w.close_hits[c]
-    if hits >= IN_A_ROW and (hits >= AT_ONCE_FAST or faint(plan, w, c, w.rate[c])):
+    if hits >= IN_A_ROW and (hits >= AT_ONCE_FAST or faint(plan, w, c, w.velocity[c])):
         return True
     if w.half[c] >= 0.0:
         return False
-    hop = r * w.rate[c] / w.half[c]
+    hop = r * w.velocity[c] / w.half[c]
     if (not alone or hop > w.end - w.sigma) and unresolved(plan, w, c, hop, t):
         return True
     if not alone:

@@ -86,8 +86,8 @@ def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:
         w.alpha[c] = product(w.G, w.a_free, c, w.n_q) + w.bias[c]
         if w.gap[c] <= plan.slack:
             w.gap[c] = 0.0
-        w.chosen[c], w.z[c], w.before[c] = c, 0.0, w.rate[c]
-        w.b[c] = w.gap[c] / span + w.rate[c] + span * w.alpha[c]
+        w.chosen[c], w.z[c], w.before[c] = c, 0.0, w.velocity[c]
+        w.b[c] = w.gap[c] / span + w.velocity[c] + span * w.alpha[c]
     return solve_chosen(m, plan, w, w.W, INERTIA, n_c, NONE)
 
 
@@ -104,25 +104,25 @@ def note(m: Model, plan: Plan, w: Work, start: float, end: float, span: float) -
     """What has become of each contact."""
     n_c = w.n_c
     for c in range(n_c):
-        w.rate[c] = w.b[c] - w.gap[c] / span
+        w.velocity[c] = w.b[c] - w.gap[c] / span
         for d in range(n_c):
-            w.rate[c] += w.W[c * w.n_c + d] * w.z[d]
+            w.velocity[c] += w.W[c * w.n_c + d] * w.z[d]
     for c in range(n_c):
         closed, pressed, touches = w.status[c] == CLOSED, w.z[c] > 0.0, w.gap[c] == 0.0
         w.turns[c] = w.hops[c] = w.fall[c] = 0.0
         if pressed and not closed:
             kind = IMPACT if touches and m.restitution[c] <= STOPS else ACCUMULATION
-            w.record.note(start, c, w.before[c], 0.0 if touches else w.rate[c], w.z[c], kind)
+            w.record.note(start, c, w.before[c], 0.0 if touches else w.velocity[c], w.z[c], kind)
             if touches:
                 stick(w, c, end)
-        elif closed and not pressed and w.rate[c] > NOISE * speed_terms(plan, w, c):
-            release(m, plan, w, c, end, w.rate[c])
+        elif closed and not pressed and w.velocity[c] > NOISE * speed_terms(plan, w, c):
+            release(m, plan, w, c, end, w.velocity[c])
         if w.status[c] == CLOSED:
-            w.gap[c] = w.rate[c] = 0.0
-        elif touches and abs(w.rate[c]) <= NOISE * speed_terms(plan, w, c):  # at rest: the forces decide
+            w.gap[c] = w.velocity[c] = 0.0
+        elif touches and abs(w.velocity[c]) <= NOISE * speed_terms(plan, w, c):  # at rest: the forces decide
             touch(w, c)
         else:
-            w.gap[c] = max(0.0, w.gap[c] + span * w.rate[c])
+            w.gap[c] = max(0.0, w.gap[c] + span * w.velocity[c])
             w.grounded[c] = GROUND if w.gap[c] == 0.0 else 0
 
 

@@ -32,11 +32,8 @@ ON_THE_SURFACE = 0.0625  # of what counts as closed: where these end
 def invert(m: Model, plan: Plan, w: Work, rest: float, place: int) -> None:
     """A^-1 for a piece as long as `rest`, and what contacts need of it, into a place."""
     n, n_c = w.n_q, w.n_c
-    inverse, AG, WA = (
-        after(plan.A_inverse, place * n * n),
-        after(plan.AG, place * n_c * n),
-        after(plan.WA, place * n_c * n_c),
-    )
+    inverse, AG = after(plan.A_inverse, place * n * n), after(plan.AG, place * n_c * n)
+    WA = after(plan.WA, place * n_c * n_c)
     implicit_mass(m, 0.5 * rest, plan.A)
     if n == 1:
         inverse[0] = 1.0 / plan.A[0]
@@ -128,11 +125,11 @@ def measure(m: Model, w: Work, t: float) -> None:
     gap_rates(m, within(w, t), w.q, w.v, w.G, w.gap_t)
     for c in range(w.n_c):
         if m.flat:
-            w.rate[c] = product_between(m.G, w.v, c, w.n_q, m.G_ends) + w.gap_t[c]
+            w.velocity[c] = product_between(m.G, w.v, c, w.n_q, m.G_ends) + w.gap_t[c]
         else:
-            w.rate[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
+            w.velocity[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
         if w.status[c] == CLOSED:
-            w.gap[c] = w.rate[c] = 0.0
+            w.gap[c] = w.velocity[c] = 0.0
 
 
 def look_along(w: Work, tau: float) -> None:
@@ -158,7 +155,7 @@ def shift(w: Work, tau: float) -> None:
         w.impulse[c] += tau * w.force_now[c]
         w.pushed[c] += tau * w.force_now[c]
         if w.status[c] == CLOSED:
-            w.gap[c] = w.rate[c] = 0.0
+            w.gap[c] = w.velocity[c] = 0.0
         else:
             move_gap(w, c, tau)
 

@@ -18,7 +18,7 @@ cdef class Work:
     cdef Workspace lcp
     cdef Bracket bracket
     cdef Doubles q, v, a_free, a, force, next_force, q_base, q_try, v_try, a_try, jolt, q_from, v_from, a_from
-    cdef Doubles q_time, swing, v_struck, gap, rate, half, alpha, bend, bias, gap_try, gap_t, gap_t_try, end_s
+    cdef Doubles q_time, swing, v_struck, gap, velocity, half, alpha, bend, bias, gap_try, gap_t, gap_t_try, end_s
     cdef Doubles last, force_now, older, older_time, p, b, z, residual, change, doubt, before, impulse_from
     cdef Doubles since, next_zero, turned, turns, hops, fall, pushed, impulse, G, G_try, MG, W, M, problem
     cdef Indices status, grounded, hits, close_hits, plastic, chosen, held, place, first_coordinate

@@ -49,7 +49,7 @@ class Plan:
     def __init__(self, fields: dict[str, Any]) -> None:
         n_q = fields["A_inverse"].shape[1]
         self.fields = fields
-        self.h, self.made_for = fields["h"], fields["made_for"]
+        self.h = self.made_for = fields["h"]
         self.trapezoidal, self.stiff = fields["trapezoidal"], fields["stiff"]
         self.steady, self.plain, self.constant = fields["steady"], fields["plain"], fields["constant"]
         self.small, self.exact = fields["small"], fields["exact"]
@@ -79,7 +79,7 @@ class Work:
     v_struck        velocity just before the event after which the loop stopped
 
     A number per contact:
-    gap, rate       g, u
+    gap, velocity   g, u
     half            half the gap acceleration
     alpha           gap acceleration without contact forces
     bend            what the mean acceleration lacks for the position, of moving flat obstacles
@@ -211,7 +211,7 @@ class Work:
     def place_numbers(self, x: Doubles) -> None:
         """Numbers per contact, from x on; impulses come first."""
         n = self.n_c
-        self.impulse, self.rate = x, after(x, n)
+        self.impulse, self.velocity = x, after(x, n)
         self.half, self.alpha = after(x, 2 * n), after(x, 3 * n)
         self.bend, self.bias = after(x, 4 * n), after(x, 5 * n)
         self.gap_try, self.gap_t = after(x, 6 * n), after(x, 7 * n)

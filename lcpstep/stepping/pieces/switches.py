@@ -71,7 +71,7 @@ def coupled(w: Work, c: int) -> bool:
 
 def stick(w: Work, c: int, t: float) -> None:
     """A contact stays closed from here on."""
-    w.rate[c], w.status[c] = 0.0, CLOSED
+    w.velocity[c], w.status[c] = 0.0, CLOSED
     w.closed_now += 1
     w.older[c] = w.force_now[c] = 0.0
     w.record.note(t, c, 0.0, 0.0, 0.0, STICK)
@@ -82,7 +82,7 @@ def release(m: Model, plan: Plan, w: Work, c: int, t: float, after: float) -> No
     w.status[c], w.grounded[c] = OPEN, GROUND
     w.closed_now -= 1
     w.force_now[c] = w.older[c] = 0.0
-    w.gap[c], w.rate[c] = 0.0, after
+    w.gap[c], w.velocity[c] = 0.0, after
     w.record.note(t, c, 0.0, after, 0.0, RELEASE)
     count_turn(m, plan, w, c, after, False)
     w.events += 1

@@ -44,5 +44,5 @@ def move_one(w: Work, i: int, tau: float) -> None:
 
 def move_gap(w: Work, c: int, tau: float) -> None:
     """Gap c and its velocity at tau after its base become its base."""
-    w.gap[c] += tau * (w.rate[c] + tau * w.half[c])
-    w.rate[c] += 2.0 * tau * w.half[c]
+    w.gap[c] += tau * (w.velocity[c] + tau * w.half[c])
+    w.velocity[c] += 2.0 * tau * w.half[c]

@@ -4,7 +4,8 @@ theta_loop, theta_step    the loop over steps; a step; `moving`, its constants, 
 row_impulses, blows       impulses of the rows that take part; blows one after another; `reached`, whom they reach
 implicit, responses       Newton's iteration of nonlinear systems; what impulses make of velocities
 one_contact               one coordinate and contact, in registers
-turned_rows, idle         beside joints: rows that they turn within the step; contacts that bear nothing by turns
+joint_rows                joints eliminated; `turned_rows`, those that they turn within the step
+idle                      contacts that bear nothing by turns, beside joints
 repair                    states put back onto joints and obstacles
 codes                     why the loop returned
 """

@@ -18,7 +18,7 @@ from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.model import Model
 from lcpstep.pointers import after, indices_after
-from lcpstep.stepping.constraints.joint_rows import Elimination
+from lcpstep.stepping.theta_method.joint_rows import Elimination
 
 VECTORS, SQUARES = 10, 4  # of n_q numbers, and of n_q^2
 MATRICES = ("A_q", "A_v", "A_f", "X", "W")

@@ -22,10 +22,10 @@ from lcpstep.kernels.dynamics import gap_rates, gaps, total_force
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, copy
 from lcpstep.pointers import abs, after, inf, max
-from lcpstep.stepping.constraints.directions import mobilities
-from lcpstep.stepping.constraints.joint_rows import NEARLY, arrived, distribute, eliminate
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, PROJECTION_FAILED
+from lcpstep.stepping.theta_method.joint_rows import NEARLY, arrived, distribute, eliminate
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
+from lcpstep.stepping.theta_method.responses import mobilities
 
 PROJECTIONS = 20  # of Newton
 

@@ -11,8 +11,8 @@ import cython
 from lcpstep.kernels.dynamics import gap_rates, implicit_mass
 from lcpstep.kernels.linear import invert_matrix
 from lcpstep.kernels.model import Model
-from lcpstep.pointers import after
-from lcpstep.stepping.constraints.directions import mobilities
+from lcpstep.kernels.vectors import product
+from lcpstep.pointers import Doubles, Indices, after
 from lcpstep.stepping.theta_method.implicit import REFRESH, compliance
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 
@@ -50,6 +50,13 @@ def respond(linear: bool, plan: Plan, s: State, c: Rows, n_k: int) -> None:
         row = after(c.H, i * n) if i < first_joint else after(c.D, (i - first_joint) * n)
         compliance(linear, plan, s, row, after(plan.X, i * n))
     mobilities(c.H, plan.X, c.problem.ids, n_k, plan.W, c.n, n)
+
+
+def mobilities(H: Doubles, X: Doubles, ids: Indices, n_k: int, W: Doubles, n: int, n_q: int) -> None:
+    """W = H X^T on the rows that take part."""
+    for k in range(n_k):
+        for m in range(n_k):
+            W[ids[k] * n + ids[m]] = product(H, after(X, ids[m] * n_q), ids[k], n_q)
 
 
 def refit(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:

@@ -15,9 +15,9 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.stiction import rest_where_possible, solve_steps
 from lcpstep.kernels.vectors import finite, largest, product, size_of_product
 from lcpstep.pointers import Doubles, Indices, abs, after, max
-from lcpstep.stepping.constraints.joint_rows import distribute, eliminate, lost
 from lcpstep.stepping.steps import CANCELLED, CONVERGED, NO_APPROACH, RESTING, ROUNDING
 from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
+from lcpstep.stepping.theta_method.joint_rows import distribute, eliminate, lost
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.reached import reach
 from lcpstep.stepping.theta_method.responses import respond
@@ -52,15 +52,12 @@ def impulses(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, r
 
 def pose(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, rebounds: bool) -> bool:
     """The problem of the rows that take part, joints eliminated; whether it is an impact, as `rates` says."""
-    impact = rates(m, s, c, n_a, rebounds)
-    without_joints(m.linear, plan, s, c, n_a)
+    impact = without_joints(m, plan, s, c, n_a, rebounds)
     if c.turning and put_rows_on_joints(c.elimination, m, plan, s, c, n_a, n_a + c.n_f, t_next):
         respond(m.linear, plan, s, c, n_a + c.n_f + c.n_j)
-        impact = rates(m, s, c, n_a, rebounds)
-        without_joints(m.linear, plan, s, c, n_a)
+        impact = without_joints(m, plan, s, c, n_a, rebounds)
     if c.n_j > 0 and leave_out_what_bears_nothing(c, n_a):
-        impact = rates(m, s, c, n_a, rebounds)
-        without_joints(m.linear, plan, s, c, n_a)
+        impact = without_joints(m, plan, s, c, n_a, rebounds)
     if impact and rebounds and not c.in_turn:
         tie_tangents(m, c, n_a)
     return impact
@@ -87,20 +84,23 @@ def tie_tangents(m: Model, c: Rows, n_a: int) -> None:
             rate[T] = with_normal + belt + r * (R_TN / R_NN * u + belt)
 
 
-def without_joints(linear: bool, plan: Plan, s: State, c: Rows, n_a: int) -> None:
+def without_joints(m: Model, plan: Plan, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
     """Mobilities and rates of contacts and tangents that take part, into the problem; joints after them eliminated.
+
+    Returned: whether it is an impact, as `rates` says.
 
     A row that says what joints say has nothing left but the rounding of its rate, which no impulse could change.
     """
-    n, n_k = n_a + c.n_f, n_a + c.n_f + c.n_j
+    impact, n, n_k = rates(m, s, c, n_a, rebounds), n_a + c.n_f, n_a + c.n_f + c.n_j
     R, rate, ids = c.problem.mobility, c.problem.rate, c.problem.ids
     eliminate(c.elimination, plan.W, c.n, c.H, plan.X, s.n_q, ids, n, n_k, R, rate)
     if c.turning and c.elimination.swept:
-        sweep_out_turned(c.elimination, linear, plan, s, c, n, n_k)
+        sweep_out_turned(c.elimination, m.linear, plan, s, c, n, n_k)
     if c.n_j > 0:
         for k in range(n):
             if not R[k * n + k] > 0.0 and abs(rate[k]) <= UNTOLD * size_of_rate(c, c.blows.v, ids[k], s.n_q):
                 rate[k] = 0.0
+    return impact
 
 
 def leave_out_what_bears_nothing(c: Rows, n_a: int) -> bool:

@@ -92,7 +92,7 @@ def end_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float, e
     s.steps += 1
     if not (finite(s.g, s.n_c) and finite(s.u, s.n_c)):
         return NOT_FINITE
-    if (s.record.every > 0 and s.record.is_due(s.steps)) or (s.record.on_events and s.record.event > events):
+    if s.record.is_due(s.steps) or (s.record.on_events and s.record.event > events):
         s.record.keep(t_next, 0.0, s.q, s.v, s.impulse)
     return FINISHED
 

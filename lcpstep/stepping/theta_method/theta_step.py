@@ -6,7 +6,7 @@
     p       0 <= u+ + r u  complementary to  p_N >= 0   on the active contacts,  u+ = G v+ + g_t;  blow after blow
             where some of these separate while others strike, without those that separate: see `blows`
             law of friction and impact on their tangents, see `kernels.coulomb`
-            G_J v+ + g_t = 0  on joints, see `constraints.joint_rows`
+            G_J v+ + g_t = 0  on joints, see `joint_rows`
     v+      v_free + A^-1 (G^T p_N + T^T p_T + D_J^T p_J),        D_J = theta G_J(q+) + (1 - theta) G_J(q)
     q+      q + h [theta v+ + (1 - theta) v]
 
@@ -32,7 +32,6 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import add, clear, copy, finite, product, size_of_product
 from lcpstep.pointers import abs, after, max, whole
-from lcpstep.stepping.constraints.joint_rows import joints_hold
 from lcpstep.stepping.steps import RESTING, UNTOLD
 from lcpstep.stepping.theta_method.blows import one_after_another, separates
 from lcpstep.stepping.theta_method.codes import (
@@ -46,6 +45,7 @@ from lcpstep.stepping.theta_method.codes import (
 )
 from lcpstep.stepping.theta_method.idle import leave_out_idle, take_back_idle
 from lcpstep.stepping.theta_method.implicit import linearise
+from lcpstep.stepping.theta_method.joint_rows import joints_hold
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.one_contact import closed_since, kind_of
 from lcpstep.stepping.theta_method.repair import project

@@ -21,20 +21,21 @@ from lcpstep.kernels.dynamics import gap_rates, gaps
 from lcpstep.kernels.linear import factorise
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, clear, copy, largest, product
-from lcpstep.pointers import after
-from lcpstep.stepping.constraints.directions import forget_rounding, mobilities
-from lcpstep.stepping.constraints.joint_rows import (
+from lcpstep.pointers import Doubles, after
+from lcpstep.stepping.theta_method.implicit import compliance
+from lcpstep.stepping.theta_method.joint_rows import (
     NEARLY,
     Elimination,
     factorise_joints,
     leave,
     solve_joints,
 )
-from lcpstep.stepping.theta_method.implicit import compliance
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
+from lcpstep.stepping.theta_method.responses import mobilities
 
 LANDINGS = 20  # of Newton
 LANDED = 1e-13  # of a way: the last one of these
+HELD = 1e-9  # of a row: what is left of it where the place is off joints that turn by rounding
 
 
 def sweep_out_turned(e: Elimination, linear: bool, plan: Plan, s: State, c: Rows, n: int, n_k: int) -> None:
@@ -134,6 +135,12 @@ def land_on_joints(e: Elimination, plan: Plan, s: State, c: Rows, first: int, t:
             gap_rates(c.joints, t, s.q_between, s.next_v, c.J_there, c.J_t_there)
             return True
     return False
+
+
+def forget_rounding(left: Doubles, row: Doubles, n_q: int) -> None:
+    """What joints that turn leave of a row is nothing if it may be no more than the rounding of the place."""
+    if largest(left, 0.0, n_q) <= HELD * largest(row, 0.0, n_q):
+        clear(left, n_q)
 
 
 def transpose(e: Elimination) -> None:
