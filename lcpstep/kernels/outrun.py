@@ -15,10 +15,9 @@ import numpy as np
 from lcpstep.arrays import doubles
 from lcpstep.kernels.dynamics import gap_rates, total_force
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles, abs, after, max
-
-ROUNDING = 64 * 2.0**-52  # of the fastest motion of a run
 
 
 @cython.ccall
@@ -47,7 +46,7 @@ def steepest(m: Model, t: Any, q: Any, v: Any, impulse: Any, longest: float, par
                 if not speed - before <= most and 0.0 < at[k + 1] - at[k] <= longest:
                     most, best, until = speed - before, k, top
             if best >= 0:
-                rounding = ROUNDING * sqrt(form(m.M, after(rates, until * n), n))
+                rounding = NOISE * sqrt(form(m.M, after(rates, until * n), n))
                 weigh(m, best, at, x, rates, pushes, rounding, work, out)
     return found
 

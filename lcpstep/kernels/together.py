@@ -12,11 +12,13 @@ import cython
 
 from lcpstep.kernels.dynamics import moves
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import size_of_product
 from lcpstep.pointers import Doubles, abs, min
 
-TOGETHER = 64 * 2.0**-52  # of the terms of a gap, their signs left aside: smaller ones are zero to rounding
-CROSSED = 1000.0  # such roundings: so far off a contact may be while another one crosses that of its own gap
+CROSSED = (
+    1000.0  # roundings of a gap: so far off a contact may be while another one crosses that of its own gap
+)
 SAME_OUTCOME, TURNS = 1e-10, 64  # of impacts in turn: relative difference of speeds; impacts of each contact
 
 
@@ -31,7 +33,7 @@ def gap_rounding(m: Model, G: Doubles, q: Doubles, c: int, path: float) -> float
         size += abs(m.offset[c])
         if moves(m):
             size += abs(m.motion_now[3 * c])
-    return TOGETHER * (size + size_of_product(G, q, c, m.n_q))
+    return NOISE * (size + size_of_product(G, q, c, m.n_q))
 
 
 def moment_untold(rounding: float, u: float, since: float) -> float:
@@ -39,7 +41,7 @@ def moment_untold(rounding: float, u: float, since: float) -> float:
 
     A slow one crosses its rounding in long; in a hop it is known to digits of its own.
     """
-    return min(rounding / -u, TOGETHER * since)
+    return min(rounding / -u, NOISE * since)
 
 
 def order_matters(

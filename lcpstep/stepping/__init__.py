@@ -3,7 +3,6 @@
 moreau, moreau_run       Moreau's theta-method, and a run of it; its steps: `theta_method`
 sparse                   the same for large systems: `sparse_equations`, `sparse_blows`; with joints or friction
                          `sparse_coupled`, `sparse_coulomb`, `sparse_stiction`, `sparse_path`, `sparse_updates`
-constraints              what contacts, tangents and joints have in common as rows of a step
 located, pieces          impacts at their own times: method, and a run with its steps
 rubbing                  the same with friction or joints
 step_control             steps by a tolerance: `moreau_by_tolerance`, `located_by_tolerance` (`located_parts`);

@@ -199,10 +199,9 @@ class Control(Course):
         """Whether the step attempted is accepted; sets the next one's place and level."""
         level, h = self.level, self.step_size(self.level)
         size_q, size_v = max(self.size_q, self.far_q), max(self.size_v, self.far_v)
-        noise = min(NOISE, LEAST_SHARE * self.tolerance)
         late = LATE * abs(self.now())
         wrong_q, wrong_v = self.apart_q - late * self.far_v, self.apart_v - late * self.acceleration
-        error = max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v)) - noise
+        error = relative_error(wrong_q, wrong_v, size_q, size_v, self.tolerance)
         share = (min(self.cut, h) - self.into) / self.span
         jumps = self.position < self.until and FLAT * error > self.last and self.jumped < JUMPS
         allowed = self.tolerance * (max(share, LEAST_SHARE) if self.happened or jumps else share)
@@ -259,6 +258,11 @@ class Control(Course):
     def step(self) -> float:
         """Its size [s]."""
         return self.step_size(self.level)
+
+
+def relative_error(wrong_q: float, wrong_v: float, size_q: float, size_v: float, tolerance: float) -> float:
+    """The larger error of positions and velocities, relative to 1 + the size of the motion, beyond rounding."""
+    return max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v)) - min(NOISE, LEAST_SHARE * tolerance)
 
 
 def stamp(r: Record, row: int, event: int, late: float, t: float) -> None:

@@ -104,18 +104,13 @@ def settle(s: Motion, k: int) -> int:
         if s.switches >= s.log_capacity:
             s.culprit = k
             return BUFFER_FULL
-        k = switch(s, k)
+        k = enter(s, leave(s, k), False)
         if s.stalled > MAX_STALLED:
             return ENDLESS_SWITCHING
         if s.events >= s.max_events and k >= 0:
             return TOO_MANY_EVENTS
     s.culprit = -1
     return DONE
-
-
-def switch(s: Motion, k: int) -> int:
-    """Guard k acts at y, and a mode begins. Returns the guard that acts at once in that mode, or -1."""
-    return enter(s, leave(s, k), False)
 
 
 def leave(s: Motion, k: int) -> int:

@@ -13,7 +13,7 @@ import cython
 
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import NOISE, RESOLUTION
-from lcpstep.kernels.together import CROSSED, TOGETHER, gap_rounding, moment_untold, order_matters
+from lcpstep.kernels.together import CROSSED, gap_rounding, moment_untold, order_matters
 from lcpstep.kernels.vectors import clear
 from lcpstep.pointers import Doubles, abs, inf, max, min
 from lcpstep.stepping.pieces.chosen import solve_chosen
@@ -195,7 +195,7 @@ def rounding_of_gap(m: Model, plan: Plan, w: Work, c: int) -> float:
     """
     step = plan.h * speed_terms(plan, w, c)
     here = gap_rounding(m, w.G, w.q, c, step)
-    return max(here, min(plan.slack, here + TOGETHER * (w.steps - 1) * step))
+    return max(here, min(plan.slack, here + NOISE * (w.steps - 1) * step))
 
 
 def apply(plan: Plan, w: Work, n_s: int) -> float:

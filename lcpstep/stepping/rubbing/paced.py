@@ -26,6 +26,7 @@ from lcpstep.stepping.adaptive import LEAST_SHARE, NEAR, NOISE
 from lcpstep.stepping.rubbing.found import curve, measure_base, note_arrival, note_middle
 from lcpstep.stepping.rubbing.let_go import is_motion
 from lcpstep.stepping.rubbing.strides import Strides, go_on_with, push_end_back
+from lcpstep.stepping.step_control import relative_error
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 2.0  # of the change of step
 STEEP = 1.585  # an error that falls by no more than this power of the step, a third at half of it, comes from a jump
@@ -142,8 +143,7 @@ def weigh(s: Strides, h: float) -> float:
         else:
             wrong_v = max(wrong_v, off)
     size_q, size_v = largest(s.y_new, s.size_q, n), largest(v, s.size_v, n)
-    error = max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v))
-    return error - min(NOISE, LEAST_SHARE * s.tolerance)
+    return relative_error(wrong_q, wrong_v, size_q, size_v, s.tolerance)
 
 
 def strayed(s: Strides, g: int) -> float:
