@@ -8,13 +8,10 @@ from __future__ import annotations
 import math
 
 from lcpstep.kernels.roundings import RESOLUTION
-from lcpstep.kernels.status import BUFFER_FULL
 from lcpstep.stepping.steps import WHOLE
-from lcpstep.trajectory import Status
 
-# Why the loop returned, besides its method's own reasons: at the end of the span, to have its buffers emptied, for
-# good, and for what Python makes
-REACHED, PAUSED, TOO_SMALL, WANTED = int(Status.DONE), BUFFER_FULL, int(Status.STEP_TOO_SMALL), -3
+# Why the loop returned, besides what `kernels.status` has, DONE at the end of the span: for what Python makes
+WANTED = -3
 LEVELS = 52  # halvings of the longest step, at most
 OWN = LEVELS + 2  # place of the matrices of a part as long as no level's; those of its halves come next
 NOISE = 8 * RESOLUTION  # relative differences that are rounding

@@ -10,22 +10,16 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.codes import IMPACT
 from lcpstep.kernels.dynamics import gaps
 from lcpstep.kernels.layout import COLUMNS
+from lcpstep.kernels.status import BUFFER_FULL, DONE, TOO_MANY_EVENTS
 from lcpstep.kernels.vectors import distance, largest
 from lcpstep.pointers import abs, after, inf, max, min, whole
-from lcpstep.stepping.adaptive import NEAR, REACHED
+from lcpstep.stepping.adaptive import NEAR
 from lcpstep.stepping.hidden_forces import hidden, late
 from lcpstep.stepping.located_parts import Parts
-from lcpstep.stepping.pieces.codes import (
-    BUFFER_FULL,
-    CLOSED,
-    FINISHED,
-    IMPACT,
-    SAME_TIME,
-    STOPPED,
-    TOO_MANY_EVENTS,
-)
+from lcpstep.stepping.pieces.codes import CLOSED, SAME_TIME, STOPPED
 from lcpstep.stepping.pieces.times import driven_by
 from lcpstep.stepping.step_control import stamp
 
@@ -66,8 +60,8 @@ class Attempts(Parts):
             self.weigh(end - start)
         # About the time of the event: the motion is back at its start
         self.failed = self.failed or not agreed
-        self.cut = inf if entire and self.two.code == FINISHED else self.w.sigma
-        return REACHED if self.two.good() else self.two.code
+        self.cut = inf if entire and self.two.code == DONE else self.w.sigma
+        return DONE if self.two.good() else self.two.code
 
     def weigh(self, length: float) -> None:
         """Errors of what the single piece and the halves have led to, both known."""
@@ -163,7 +157,7 @@ class Attempts(Parts):
             if self.saved.status[c] != CLOSED:
                 continue
             p, lasts = 0.0, self.half.status[c] == CLOSED and self.two.status[c] == CLOSED
-            lasts = lasts and self.one.status[c] == CLOSED and self.two.code == FINISHED
+            lasts = lasts and self.one.status[c] == CLOSED and self.two.code == DONE
             if lasts:
                 p = hidden(self.one.impulse[c], self.two.impulse[c])
                 if self.means or self.alike:

@@ -12,11 +12,13 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles, indices
+from lcpstep.events.codes import RELEASE
 from lcpstep.kernels.layout import COLUMNS
+from lcpstep.kernels.status import DONE
 from lcpstep.kernels.vectors import clear, copy, copy_indices, largest
 from lcpstep.pointers import Doubles, after, inf, nan, whole
 from lcpstep.stepping.adaptive import OWN
-from lcpstep.stepping.pieces.codes import CLOSED, FINISHED, RELEASE, STOPPED, WHOLE
+from lcpstep.stepping.pieces.codes import CLOSED, STOPPED, WHOLE
 from lcpstep.stepping.pieces.corners import find_corners
 from lcpstep.stepping.pieces.keep import keep_now
 from lcpstep.stepping.pieces.loop import Steps
@@ -44,11 +46,11 @@ class Led:
         self.v, self.gap = after(self.q, n_q), after(self.q, 2 * n_q)
         self.half, self.force = after(self.gap, n_c), after(self.gap, 2 * n_c)
         self.impulse = after(self.gap, 3 * n_c)
-        self.code, self.time, self.off = FINISHED, 0.0, 0.0
+        self.code, self.time, self.off = DONE, 0.0, 0.0
 
     def good(self) -> bool:
         """Whether it could be taken."""
-        return self.code in (FINISHED, STOPPED)
+        return self.code in (DONE, STOPPED)
 
 
 def copy_state(to: Work, w: Work, n_numbers: int, n_marks: int, n_matrices: int) -> None:
@@ -130,7 +132,7 @@ class Parts(Control):
         middle = start + 0.5 * (end - start)
         code = self.part(start, middle, self.from_time + middle, even, 0.0, 1)
         self.led(self.half, code)
-        if code != FINISHED:
+        if code != DONE:
             self.led(self.two, code)
             return
         code = self.part(middle, end, last, even, 0.0, 1)
@@ -158,7 +160,7 @@ class Parts(Control):
         self.w.unchanged, self.w.blind, self.w.goal, self.w.off = False, until, last, 0.0
         self.carry_on(start, even and start == 0.0, COLLAPSE * end)
         code = self.way.take(self.from_time, self.w.steps, self.w.steps + 1)
-        if code == FINISHED:  # a contact's flight is followed without counting times
+        if code == DONE:  # a contact's flight is followed without counting times
             self.w.sigma = end
         self.elapsed = self.w.sigma - start
         return code

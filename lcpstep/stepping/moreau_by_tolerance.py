@@ -32,6 +32,7 @@ import numpy as np
 
 from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.clock import Clock
+from lcpstep.kernels.status import BUFFER_FULL, DONE
 from lcpstep.kernels.vectors import clear, copy, copy_indices, distance, largest
 from lcpstep.pointers import abs, after, inf, max, min
 from lcpstep.stepping.adaptive import LEAST_SHARE, OWN
@@ -39,7 +40,6 @@ from lcpstep.stepping.hidden_edges import Edges, dip
 from lcpstep.stepping.hidden_switches import Switches
 from lcpstep.stepping.step_control import Control, stamp
 from lcpstep.stepping.steps import LATE
-from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED
 from lcpstep.stepping.theta_method.responses import refit
 from lcpstep.stepping.theta_method.theta_loop import Steps, look
 
@@ -107,7 +107,7 @@ class Attempts(Control):
         self.struck, self.share = False, max(1.0, h / (self.span * LEAST_SHARE))
         self.switches.begin(self.s, slow)
         code = self.part(0, t, h, slow)
-        if code == FINISHED:
+        if code == DONE:
             if max(self.apart_q / self.resolved(self.size_q), self.apart_v / slow) > 2.0 * self.share:
                 self.apart_q = inf
             else:
@@ -117,7 +117,7 @@ class Attempts(Control):
                 self.apart_q = self.apart_v = 0.0
                 code = self.halves(t, h, slow)
         self.full = code == BUFFER_FULL and self.event > 0
-        self.failed = code != FINISHED
+        self.failed = code != DONE
         if not self.struck and h > 0.0:
             self.acceleration = distance(self.s.v, self.begin_v, n) / h
         self.far_q, self.far_v = largest(self.s.q, 0.0, n), largest(self.s.v, 0.0, n)
@@ -126,9 +126,9 @@ class Attempts(Control):
     def halves(self, t: float, h: float, slow: float) -> int:
         """Two steps of half the size, and what they differ by from the one."""
         code = self.part(1, t, 0.5 * h, slow)
-        if code == FINISHED:
+        if code == DONE:
             code = self.part(2, t + 0.5 * h, 0.5 * h, slow)
-        if code != FINISHED:
+        if code != DONE:
             return code
         if self.record.event > self.event:
             self.happened = True
@@ -139,7 +139,7 @@ class Attempts(Control):
             apart = distance(self.one_v, self.s.v, self.s.n_q)
             apart = max(apart, self.switches.unseen(h, self.plan, self.s, self.rows))
             self.apart_v = max(self.apart_v, apart - self.switches.creep)
-        return FINISHED
+        return DONE
 
     def look_for_edges(self, h: float, slow: float) -> None:
         """Errors where obstacles have edges: what lasts is struck there, or leaves, at a time that is not known."""
@@ -161,7 +161,7 @@ class Attempts(Control):
             refit(self.m, self.plan, self.s, self.rows, start)
         k = self.s.steps
         code = self.way.take(start, k, k + 1)
-        if code != FINISHED:
+        if code != DONE:
             return code
         self.after_part(h, slow)
         if part > 0 and not self.m.flat:
@@ -173,7 +173,7 @@ class Attempts(Control):
             end = self.ends
         if part > 0:
             self.keep_times(start, end)
-        return FINISHED
+        return DONE
 
     def ahead(self) -> float:
         """Length of the step at hand: to the next multiple, or to a corner before it, whose near side it ends on."""

@@ -29,18 +29,9 @@ from lcpstep.kernels.course import AHEAD, ARRIVED, Course
 from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.record import Record
 from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.status import BUFFER_FULL, DONE, STEP_TOO_SMALL
 from lcpstep.pointers import abs, inf, max, min
-from lcpstep.stepping.adaptive import (
-    LEAST_SHARE,
-    LEVELS,
-    NOISE,
-    PAUSED,
-    PLENTY,
-    REACHED,
-    TOO_SMALL,
-    WANTED,
-    sizes,
-)
+from lcpstep.stepping.adaptive import LEAST_SHARE, LEVELS, NOISE, PLENTY, WANTED, sizes
 
 ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
 ROWS = 8  # that a step may keep besides the times asked for
@@ -121,7 +112,7 @@ class Control(Course):
 
     def attempt(self) -> int:
         """Of a method: one step, and two halves of it; what was found into the fields, 0 or why it failed."""
-        return REACHED
+        return DONE
 
     def stage(self, goal: int) -> int:
         """Whether a step is to be attempted."""
@@ -130,11 +121,11 @@ class Control(Course):
     def refusal(self) -> int:
         """Whether there is room for the states of a step, and whether its matrices are made."""
         if self.record.row_capacity - self.record.row < self.n_times - self.record.next_time + ROWS:
-            return PAUSED
-        return REACHED if self.made[self.level] and self.made[self.level + 1] else WANTED
+            return BUFFER_FULL
+        return DONE if self.made[self.level] and self.made[self.level + 1] else WANTED
 
     def move(self) -> int:
-        """An attempt; REACHED where the run goes on, which it also does not where a callback has failed.
+        """An attempt; DONE where the run goes on, which it also does not where a callback has failed.
 
         An interrupt that a callback heard is to be passed on.
         """
@@ -144,15 +135,15 @@ class Control(Course):
         code = self.attempt()
         if self.full:
             self.restore()
-            return PAUSED
+            return BUFFER_FULL
         verdict = self.judge()
         if verdict == ACCEPTED:
             self.accept()
         else:
             self.restore()
         if verdict == GIVEN_UP:
-            return code if code > REACHED else TOO_SMALL  # or its events never fit into the buffers
-        return WANTED if self.failed else REACHED
+            return code if code > DONE else STEP_TOO_SMALL  # or its events never fit into the buffers
+        return WANTED if self.failed else DONE
 
     def begin_attempt(self) -> None:
         """Nothing is known of it yet."""

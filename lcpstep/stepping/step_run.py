@@ -11,10 +11,11 @@ import numpy as np
 
 from lagrangian import Scene
 from lcpstep.faults import cause
+from lcpstep.kernels.status import DONE
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.running import Run
-from lcpstep.stepping.adaptive import LOOK, REACHED, WANTED
+from lcpstep.stepping.adaptive import LOOK, WANTED
 from lcpstep.stepping.steps import divided, unresolved
 
 
@@ -102,7 +103,7 @@ class StepRun(Run):
             cause()  # an interrupt goes on its way
             if code == WANTED:
                 self.control.prepare()
-        self.arrived = code == REACHED and self.control.arrived
+        self.arrived = code == DONE and self.control.arrived
         return code
 
     def empty(self) -> None:

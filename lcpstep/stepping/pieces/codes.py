@@ -3,17 +3,10 @@
 from __future__ import annotations
 
 from lcpstep.kernels.roundings import RESOLUTION
-from lcpstep.kernels.status import BUFFER_FULL as BUFFER_FULL
-from lcpstep.stepping.steps import LATE as LATE
-from lcpstep.trajectory import Kind, Status
 
-# Why the loop returned: a status of the run (FINISHED: nothing hinders it, go on),
-FINISHED, NOT_FINITE, LCP_FAILED = int(Status.DONE), int(Status.NOT_FINITE), int(Status.LCP_FAILED)
-TOO_MANY_EVENTS = int(Status.TOO_MANY_EVENTS)
-# BUFFER_FULL (the record is to be emptied) or STOPPED (at an event); within the loop alone AGAIN: for another round,
+# Why the loop returned, besides what `kernels.status` has: at an event; or, within the loop alone, for another round,
 # in which nothing is known yet of the piece that begins
 STOPPED, AGAIN = -2, -3
-IMPACT, ACCUMULATION, STICK, RELEASE = (int(kind) for kind in list(Kind)[:4])  # kinds of events
 OPEN, CLOSED = 0, 1  # values of Work.status
 GROUND, LEFT = 1, 2  # of Work.grounded: the piece begins at gap zero; and the contact has just lost its force
 NOBODY, CORNER = -1, -2  # in the place of a contact: none; all whose velocity jumps at a corner

@@ -8,9 +8,10 @@ from lcpstep.kernels.dynamics import gaps
 from lcpstep.kernels.linear import grow_factor
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import NOISE
+from lcpstep.kernels.status import DONE, LCP_FAILED, NOT_FINITE
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles, abs, after, max
-from lcpstep.stepping.pieces.codes import CORNER, FINISHED, GROUND, LCP_FAILED, NOT_FINITE, OPEN
+from lcpstep.stepping.pieces.codes import CORNER, GROUND, OPEN
 from lcpstep.stepping.pieces.impulses import strike, zero_speeds
 from lcpstep.stepping.pieces.keep import keep_event
 from lcpstep.stepping.pieces.magnitudes import speed_terms, velocity_of, with_terms
@@ -23,13 +24,13 @@ def event(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     """The impact of contact c at w.sigma of the step that began at t, or that of a corner, and what it changes."""
     now = t + w.sigma
     if c != CORNER and touches(m, plan, w, c, now, 0.0):
-        return FINISHED
+        return DONE
     if not renew_mobility(m, plan, w, now):
         return NOT_FINITE
     n_s = strike(m, plan, w, c, now)
     if n_s <= 0:
         idle(w)
-        return LCP_FAILED if n_s < 0 else FINISHED
+        return LCP_FAILED if n_s < 0 else DONE
     if plan.plain:  # rounding of the state must not add up over many impacts
         for k in range(n_s):
             d = w.chosen[k]
@@ -41,7 +42,7 @@ def event(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     if not renew_forces(m, plan, w, now):
         return NOT_FINITE
     keep_event(w, now)
-    return FINISHED
+    return DONE
 
 
 def touches(m: Model, plan: Plan, w: Work, c: int, t: float, slow: float) -> bool:

@@ -11,23 +11,14 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.codes import ACCUMULATION, IMPACT
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import NOISE, RESOLUTION
 from lcpstep.kernels.together import CROSSED, gap_rounding, moment_untold, order_matters
 from lcpstep.kernels.vectors import clear
 from lcpstep.pointers import Doubles, abs, inf, max, min
 from lcpstep.stepping.pieces.chosen import solve_chosen
-from lcpstep.stepping.pieces.codes import (
-    ACCUMULATION,
-    CLOSED,
-    CORNER,
-    GROUND,
-    IMPACT,
-    INERTIA,
-    LEFT,
-    OPEN,
-    STOPS,
-)
+from lcpstep.stepping.pieces.codes import CLOSED, CORNER, GROUND, INERTIA, LEFT, OPEN, STOPS
 from lcpstep.stepping.pieces.corners import choose_jumping
 from lcpstep.stepping.pieces.magnitudes import LEAST, speed_terms, velocity_of
 from lcpstep.stepping.pieces.refine import NONE

@@ -14,24 +14,11 @@ from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.dynamics import external_force
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.status import BUFFER_FULL, DONE, LCP_FAILED, NOT_FINITE, TOO_MANY_EVENTS
 from lcpstep.kernels.vectors import clear, copy, finite, product, size_of_product
 from lcpstep.pointers import abs, inf, max
 from lcpstep.stepping.pieces.carried import put_kept_back
-from lcpstep.stepping.pieces.codes import (
-    AGAIN,
-    BUFFER_FULL,
-    CLOSED,
-    CORNER,
-    FINISHED,
-    GROUND,
-    LATE,
-    LCP_FAILED,
-    NOBODY,
-    NOT_FINITE,
-    OPEN,
-    STOPPED,
-    TOO_MANY_EVENTS,
-)
+from lcpstep.stepping.pieces.codes import AGAIN, CLOSED, CORNER, GROUND, NOBODY, OPEN, STOPPED
 from lcpstep.stepping.pieces.corners import find_corners, go_beyond, obstacles_move
 from lcpstep.stepping.pieces.event import remeasure
 from lcpstep.stepping.pieces.glide import glide
@@ -43,6 +30,7 @@ from lcpstep.stepping.pieces.settle import settle
 from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, measure, respond
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
+from lcpstep.stepping.steps import LATE
 
 
 class Steps(Stepwise):
@@ -99,10 +87,10 @@ class Steps(Stepwise):
                     end = self.w.record.untimed_until(self.plan.h, t0, first, self.last)
                 glide(self.m, self.plan, self.w, t0, first, end)
                 if self.w.steps >= self.last:
-                    return FINISHED
+                    return DONE
             begin_step(self.m, self.plan, self.w)
         code = self.step(t0 + self.plan.h * (self.w.steps - first))
-        if code != FINISHED:
+        if code != DONE:
             return code
         t_next = self.w.goal if self.w.pausing else t0 + self.plan.h * (self.w.steps + 1 - first)
         return end_step(self.plan, self.w, t_next, self.stop)
@@ -114,35 +102,35 @@ class Steps(Stepwise):
                 return BUFFER_FULL
             if self.w.record.event + self.w.idle > self.w.events_left:
                 return TOO_MANY_EVENTS
-            c, code = NOBODY, FINISHED
+            c, code = NOBODY, DONE
             if self.w.sigma >= self.w.end:
                 if self.w.end >= self.plan.h:
-                    return FINISHED
+                    return DONE
                 code = self.begin_interval(t)
                 c = self.found
-            if c == NOBODY and code == FINISHED:
+            if c == NOBODY and code == DONE:
                 code = self.piece(t)
-                c = self.found if code == FINISHED else NOBODY
-            if c != NOBODY and code == FINISHED:
+                c = self.found if code == DONE else NOBODY
+            if c != NOBODY and code == DONE:
                 code = self.take_event(t, c)
             if code == LCP_FAILED and not poses(self.w):
                 return NOT_FINITE
-            if code != FINISHED and code != AGAIN:
+            if code != DONE and code != AGAIN:
                 return code
 
     def piece(self, t: float) -> int:
         """One piece of motion, up to the event that ends it; AGAIN where the motion goes on otherwise."""
         code = self.begin_piece(t)
-        if code != FINISHED:
+        if code != DONE:
             return code
         if self.w.stalled > 0.0 or self.w.events > self.plan.per_step:  # without end
             code = settle(self.m, self.plan, self.w, t)
-            return AGAIN if code == FINISHED else code
+            return AGAIN if code == DONE else code
         code = self.find(t)
-        if code != FINISHED:
+        if code != DONE:
             return code
         code = self.follow(t)
-        return STOPPED if code == FINISHED and self.w.blind > 0.0 else code
+        return STOPPED if code == DONE and self.w.blind > 0.0 else code
 
     def take_event(self, t: float, c: int) -> int:
         """The event of a contact or of a corner; STOPPED where steps by a tolerance want to look at it."""
@@ -150,7 +138,7 @@ class Steps(Stepwise):
         if pausing:
             copy(self.w.v_struck, self.w.v, self.w.n_q)
         code = self.strike(t, c)
-        return STOPPED if pausing and code == FINISHED else code
+        return STOPPED if pausing and code == DONE else code
 
     def begin_interval(self, t: float) -> int:
         """The smooth interval from w.sigma to the next corner or the end of the step.
@@ -174,7 +162,7 @@ class Steps(Stepwise):
             self.w.fresh = False
             if self.found == NOBODY:  # what rests takes part: there was no time for the forces to part them
                 self.found = closing_now(self.w) if self.w.closed_now > 0 else NOBODY
-        return FINISHED
+        return DONE
 
     def end_interval(self, t: float) -> None:
         """Where the smooth interval at hand ends within the step that began at t."""
@@ -231,7 +219,7 @@ def end_step(plan: Plan, w: Work, t: float, stop: float) -> int:
         return NOT_FINITE
     if w.record.is_due(w.steps):
         keep(w, t, 0.0)
-    return FINISHED
+    return DONE
 
 
 def begin_step(m: Model, plan: Plan, w: Work) -> None:
@@ -296,4 +284,4 @@ def begin_motion(m: Model, plan: Plan, w: Work, t: float) -> int:
     if w.record.n_times == 0:
         keep(w, t, 0.0)
     keep_now(w, t)
-    return FINISHED
+    return DONE

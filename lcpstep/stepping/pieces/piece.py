@@ -12,10 +12,11 @@ from lcpstep.kernels.dynamics import gaps, moves, obstacle
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
 from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.status import DONE, LCP_FAILED, NOT_FINITE
 from lcpstep.kernels.together import gap_rounding
 from lcpstep.kernels.vectors import copy, distance, product
 from lcpstep.pointers import abs, after, max, min
-from lcpstep.stepping.pieces.codes import CLOSED, FINISHED, LCP_FAILED, LEFT, NOBODY, NOT_FINITE, OPEN
+from lcpstep.stepping.pieces.codes import CLOSED, LEFT, NOBODY, OPEN
 from lcpstep.stepping.pieces.contact_forces import hold, land
 from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
 from lcpstep.stepping.pieces.smooth import (
@@ -249,7 +250,7 @@ def move(m: Model, plan: Plan, w: Work, t: float, tau: float, to_end: bool) -> i
             measure(m, w, now + tau)
     if wanted and not plan.plain:
         keep_between(m, plan, w, now, tau, end)
-    return FINISHED
+    return DONE
 
 
 def take_back(plan: Plan, w: Work, t: float) -> bool:

@@ -10,18 +10,10 @@ import cython
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.status import DONE, LCP_FAILED, NOT_FINITE
 from lcpstep.kernels.vectors import copy, distance, product
 from lcpstep.pointers import abs, max, min
-from lcpstep.stepping.pieces.codes import (
-    AGAIN,
-    CLOSED,
-    CORNER,
-    FINISHED,
-    LCP_FAILED,
-    LEFT,
-    NOBODY,
-    NOT_FINITE,
-)
+from lcpstep.stepping.pieces.codes import AGAIN, CLOSED, CORNER, LEFT, NOBODY
 from lcpstep.stepping.pieces.event import straighten_struck, touches
 from lcpstep.stepping.pieces.impulses import strike
 from lcpstep.stepping.pieces.jumps import breaks
@@ -75,7 +67,7 @@ class PolynomialSteps(Steps):
             self.w.sigma = self.w.end
             return AGAIN
         length = min(self.w.end - self.w.sigma, self.plan.longest)
-        return FINISHED if load(self.m, self.plan, self.w, self.z, now, length) else LCP_FAILED
+        return DONE if load(self.m, self.plan, self.w, self.z, now, length) else LCP_FAILED
 
     def find(self, t: float) -> int:
         """The polynomial, and the first event on it."""
@@ -100,7 +92,7 @@ class PolynomialSteps(Steps):
                 self.found = landing
         self.ends = self.found == NOBODY and self.tau == length
         self.ends = self.ends and self.w.sigma + length >= self.w.end * (1.0 - RESOLUTION)
-        return FINISHED
+        return DONE
 
     def measure_at(self, at: float, tau: float) -> None:
         """State and gaps at tau after the base, on the polynomial."""
@@ -117,7 +109,7 @@ class PolynomialSteps(Steps):
         """Contact c opens, or lands, or a corner turns velocities."""
         if c != CORNER and self.opens:
             lose_force(self.m, self.plan, self.w, t + self.w.sigma, c)
-            return FINISHED
+            return DONE
         return land(self.m, self.plan, self.w, t + self.w.sigma, c)
 
 
@@ -152,7 +144,7 @@ def follow(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, e
         w.record.keep_awaited(z.q, z.v, w.impulse)
     w.sigma = w.end if ends else w.sigma + tau
     if tau == 0.0:
-        return FINISHED
+        return DONE
     if w.closed_now > 0:
         for k in range(4):
             if not force_at(m, plan, w, z, now, NODES[k] * tau):
@@ -178,7 +170,7 @@ def follow(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, e
     for c in range(w.n_c):
         if z.gap_to[c] > plan.slack:
             w.gap[c] = z.gap_to[c]
-    return FINISHED
+    return DONE
 
 
 def carried(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> float:
@@ -207,7 +199,7 @@ def land(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
         slow = SLOW * plan.h * acceleration_terms(m, w, c) if again else 0.0
         if touches(m, plan, w, c, t, slow):
             w.last[c] = w.sigma
-            return FINISHED
+            return DONE
     if not acceleration(m, plan, w, t, w.q, w.v, w.a):
         return NOT_FINITE
     gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
@@ -219,7 +211,7 @@ def land(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     n_s = strike(m, plan, w, c, t)
     if n_s <= 0:
         idle(w)
-        return LCP_FAILED if n_s < 0 else FINISHED
+        return LCP_FAILED if n_s < 0 else DONE
     straighten_struck(m, w, t, n_s)  # rounding of the velocity must not be larger than that of small hops
     keep_event(w, t)
-    return FINISHED
+    return DONE

@@ -10,9 +10,10 @@ import cython
 
 from lcpstep.kernels.dynamics import external_force, gap_rates, moves, obstacle
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.status import DONE, LCP_FAILED
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import abs, min
-from lcpstep.stepping.pieces.codes import AGAIN, FINISHED, LCP_FAILED, NOBODY
+from lcpstep.stepping.pieces.codes import AGAIN, NOBODY
 from lcpstep.stepping.pieces.event import event
 from lcpstep.stepping.pieces.jumps import breaks
 from lcpstep.stepping.pieces.loop import Steps
@@ -42,7 +43,7 @@ class QuadraticSteps(Steps):
 
     def begin_piece(self, t: float) -> int:
         """Accelerations and gap quadratics."""
-        return FINISHED if begin_piece(self.m, self.plan, self.w, t + self.w.sigma) else LCP_FAILED
+        return DONE if begin_piece(self.m, self.plan, self.w, t + self.w.sigma) else LCP_FAILED
 
     def find(self, t: float) -> int:
         """The first gap that closes; AGAIN after impacts of many bodies."""
@@ -57,7 +58,7 @@ class QuadraticSteps(Steps):
             if self.found != NOBODY and take_in_turn(self.m, self.plan, self.w, t):
                 return AGAIN
         self.ends = self.found == NOBODY and self.tau == rest
-        return FINISHED
+        return DONE
 
     def measure_at(self, at: float, tau: float) -> None:
         """State, Jacobian and rates of gaps at tau after the base, along the quadratics.

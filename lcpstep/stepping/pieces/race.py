@@ -12,11 +12,12 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.codes import IMPACT
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.quadratic import first_zero, may_reach_zero
 from lcpstep.kernels.roundings import NOISE
 from lcpstep.pointers import abs, inf, max
-from lcpstep.stepping.pieces.codes import GROUND, IMPACT
+from lcpstep.stepping.pieces.codes import GROUND
 from lcpstep.stepping.pieces.impulses import SMALL
 from lcpstep.stepping.pieces.sequences import SHORT
 from lcpstep.stepping.pieces.state import Plan, Work

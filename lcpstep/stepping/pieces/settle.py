@@ -17,23 +17,15 @@ from math import pow
 
 import cython
 
+from lcpstep.events.codes import ACCUMULATION, IMPACT
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import NOISE
+from lcpstep.kernels.status import DONE, LCP_FAILED, NOT_FINITE
 from lcpstep.kernels.vectors import add, product
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.pieces.chosen import solve_chosen
-from lcpstep.stepping.pieces.codes import (
-    ACCUMULATION,
-    CLOSED,
-    FINISHED,
-    GROUND,
-    IMPACT,
-    INERTIA,
-    LCP_FAILED,
-    NOT_FINITE,
-    STOPS,
-)
+from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, STOPS
 from lcpstep.stepping.pieces.impulses import touch
 from lcpstep.stepping.pieces.keep import keep_event
 from lcpstep.stepping.pieces.magnitudes import speed_terms
@@ -141,4 +133,4 @@ def begin_again(m: Model, plan: Plan, w: Work, t: float) -> int:
     if not renew_forces(m, plan, w, t):
         return NOT_FINITE
     keep_event(w, t)
-    return FINISHED
+    return DONE

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.codes import RELEASE, STAYS_CLOSED
 from lcpstep.kernels.model import Model
 from lcpstep.pointers import abs, max, min
-from lcpstep.stepping.pieces.codes import CLOSED, GROUND, OPEN, RELEASE, STICK
+from lcpstep.stepping.pieces.codes import CLOSED, GROUND, OPEN
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, faint
 from lcpstep.stepping.pieces.state import Plan, Work
 
@@ -74,7 +75,7 @@ def stick(w: Work, c: int, t: float) -> None:
     w.velocity[c], w.status[c] = 0.0, CLOSED
     w.closed_now += 1
     w.older[c] = w.force_now[c] = 0.0
-    w.record.note(t, c, 0.0, 0.0, 0.0, STICK)
+    w.record.note(t, c, 0.0, 0.0, 0.0, STAYS_CLOSED)
 
 
 def release(m: Model, plan: Plan, w: Work, c: int, t: float, after: float) -> None:

@@ -7,5 +7,5 @@ one_contact               one coordinate and contact, in registers
 joint_rows                joints eliminated; `turned_rows`, those that they turn within the step
 idle                      contacts that bear nothing by turns, beside joints
 repair                    states put back onto joints and obstacles
-codes                     why the loop returned
+codes                     numbers of the loop
 """

@@ -24,10 +24,11 @@ import cython
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.recurrence import looks_back
 from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.status import DONE
 from lcpstep.kernels.vectors import add, clear, copy, copy_indices, largest, product, size_of_product
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.steps import LEFT, RETURNED, TURNS
-from lcpstep.stepping.theta_method.codes import FINISHED, NEED_LCP
+from lcpstep.stepping.theta_method.codes import NEED_LCP
 from lcpstep.stepping.theta_method.moving import Blows, Plan, Rows, State
 from lcpstep.stepping.theta_method.responses import prepare
 from lcpstep.stepping.theta_method.row_impulses import forced, impulses, pose, take_part
@@ -66,7 +67,7 @@ def one_after_another(m: Model, plan: Plan, s: State, c: Rows, b: Blows, t_next:
         if code == NEED_LCP:
             return code
         c.solved = False
-        if code != FINISHED:
+        if code != DONE:
             all_of_them(s, c, b)
             return code
         add(b.p, 1.0, c.p, c.n)
@@ -77,7 +78,7 @@ def one_after_another(m: Model, plan: Plan, s: State, c: Rows, b: Blows, t_next:
     copy(c.p, b.p, c.n)
     for k in range(s.active + c.n_f):
         c.problem.impulse[k] = c.p[c.problem.ids[k]]
-    return FINISHED
+    return DONE
 
 
 def choose(s: State, c: Rows, b: Blows) -> bool:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.codes import IMPACT, RELEASE, STAYS_CLOSED
 from lcpstep.kernels.dynamics import external_force, moves, obstacle, varies
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.one_row import keep_one
@@ -16,7 +17,7 @@ from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import finite
 from lcpstep.pointers import abs, max
 from lcpstep.stepping.steps import RESTING, UNTOLD
-from lcpstep.stepping.theta_method.codes import IMPACT, NO_EVENT, RELEASE, STICK
+from lcpstep.stepping.theta_method.codes import NO_EVENT
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 
 EVENTS = 2  # that a step may note
@@ -127,7 +128,7 @@ def met(
 def kind_of(p: float, closed: int) -> int:
     """What a step with the impulse p is to a contact: an impact, the beginning of lasting contact, its end, none."""
     if p > 0.0:
-        return IMPACT if closed == 0 else STICK if closed == 1 else NO_EVENT
+        return IMPACT if closed == 0 else STAYS_CLOSED if closed == 1 else NO_EVENT
     return RELEASE if closed == 2 else NO_EVENT
 
 

@@ -20,9 +20,9 @@ from lcpstep.kernels.acceleration import factor_mass, response
 from lcpstep.kernels.coulomb import solve_contacts
 from lcpstep.kernels.dynamics import gap_rates, gaps, total_force
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.status import DONE, LCP_FAILED, PROJECTION_FAILED
 from lcpstep.kernels.vectors import add, copy
 from lcpstep.pointers import abs, after, inf, max
-from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, PROJECTION_FAILED
 from lcpstep.stepping.theta_method.joint_rows import NEARLY, arrived, distribute, eliminate
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.responses import mobilities
@@ -52,7 +52,7 @@ def project(m: Model, plan: Plan, s: State, c: Rows, t: float) -> int:
             if before < inf and not m.linear:  # the next step begins with the forces of its own start
                 total_force(m, t, s.next_q, s.next_v, s.next_force)
                 s.forces += 1
-            return FINISHED
+            return DONE
         if not worst < inf:
             return PROJECTION_FAILED
         before = worst

@@ -12,11 +12,12 @@ import cython
 from lcpstep.kernels.coulomb import DEGENERATE, motion_of, solve_contacts
 from lcpstep.kernels.energetic import strike_in_turn
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.status import DONE, LCP_FAILED, NOT_FINITE
 from lcpstep.kernels.stiction import rest_where_possible, solve_steps
 from lcpstep.kernels.vectors import finite, largest, product, size_of_product
 from lcpstep.pointers import Doubles, Indices, abs, after, max
 from lcpstep.stepping.steps import CANCELLED, CONVERGED, NO_APPROACH, RESTING, ROUNDING
-from lcpstep.stepping.theta_method.codes import FINISHED, LCP_FAILED, NEED_LCP, NOT_FINITE
+from lcpstep.stepping.theta_method.codes import NEED_LCP
 from lcpstep.stepping.theta_method.joint_rows import distribute, eliminate, lost
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.reached import reach
@@ -47,7 +48,7 @@ def impulses(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, r
         if c.n_j > 0 and loads_nothing(s, c, n_a):
             return LCP_FAILED
     distribute(c.elimination, c.problem.impulse, ids, n_a + c.n_f, n_k, c.p, c.n)
-    return FINISHED
+    return DONE
 
 
 def pose(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, rebounds: bool) -> bool:
@@ -85,9 +86,7 @@ def tie_tangents(m: Model, c: Rows, n_a: int) -> None:
 
 
 def without_joints(m: Model, plan: Plan, s: State, c: Rows, n_a: int, rebounds: bool) -> bool:
-    """Mobilities and rates of contacts and tangents that take part, into the problem; joints after them eliminated.
-
-    Returned: whether it is an impact, as `rates` says.
+    """Mobilities and rates of contacts and tangents that take part, joints after them eliminated; is it an impact?
 
     A row that says what joints say has nothing left but the rounding of its rate, which no impulse could change.
     """

@@ -8,10 +8,10 @@ from lcpstep.kernels.acceleration import divide_by_mass
 from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.dynamics import external_force, gap_velocities, gaps, harmonic_terms, total_force
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE
 from lcpstep.kernels.vectors import copy, finite, largest
 from lcpstep.pointers import abs, inf, max, min
 from lcpstep.stepping.steps import LATE, TOUCHING
-from lcpstep.stepping.theta_method.codes import BUFFER_FULL, FINISHED, NOT_FINITE
 from lcpstep.stepping.theta_method.moving import Plan, Rows, State
 from lcpstep.stepping.theta_method.one_contact import in_registers
 from lcpstep.stepping.theta_method.theta_step import take_step
@@ -60,13 +60,13 @@ class Steps(Stepwise):
             if not (finite(self.s.g, 1) and finite(self.s.u, 1)):
                 return NOT_FINITE
             if self.s.steps >= self.last:
-                return FINISHED
+                return DONE
             if self.s.record.full(2):
                 return BUFFER_FULL
         k, events = self.s.steps - self.first, self.s.record.event
         t, t_next = self.t0 + self.plan.h * k, self.t0 + self.plan.h * (k + 1)
         code = take_step(self.m, self.plan, self.s, self.rows, t, t_next)
-        if code != FINISHED:
+        if code != DONE:
             return code
         return end_step(self.m, self.plan, self.s, self.rows, t, t_next, events)
 
@@ -94,7 +94,7 @@ def end_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float, e
         return NOT_FINITE
     if s.record.is_due(s.steps) or (s.record.on_events and s.record.event > events):
         s.record.keep(t_next, 0.0, s.q, s.v, s.impulse)
-    return FINISHED
+    return DONE
 
 
 def measure(m: Model, s: State, c: Rows, t: float) -> None:

@@ -26,23 +26,17 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.events.codes import RELEASE
 from lcpstep.kernels.dynamics import external_force, gap_rates, gaps
 from lcpstep.kernels.layout import COLUMNS
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.status import DONE, JOINTS_FAILED, NEWTON_FAILED, NOT_FINITE
 from lcpstep.kernels.vectors import add, clear, copy, finite, product, size_of_product
 from lcpstep.pointers import abs, after, max, whole
 from lcpstep.stepping.steps import RESTING, UNTOLD
 from lcpstep.stepping.theta_method.blows import one_after_another, separates
-from lcpstep.stepping.theta_method.codes import (
-    FINISHED,
-    JOINTS_FAILED,
-    MAX_ITERATIONS,
-    NEWTON_FAILED,
-    NO_EVENT,
-    NOT_FINITE,
-    RELEASE,
-)
+from lcpstep.stepping.theta_method.codes import MAX_ITERATIONS, NO_EVENT
 from lcpstep.stepping.theta_method.idle import leave_out_idle, take_back_idle
 from lcpstep.stepping.theta_method.implicit import linearise
 from lcpstep.stepping.theta_method.joint_rows import joints_hold
@@ -67,13 +61,13 @@ def take_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) 
     if not c.solved:
         predict_active(m, plan, s, c, t)
     code = step(m, plan, s, c, t, t_next)
-    while c.projected and code == FINISHED and closes_again(m, s, c, t_next):
+    while c.projected and code == DONE and closes_again(m, s, c, t_next):
         code = step(m, plan, s, c, t, t_next)
-    if code != FINISHED:
+    if code != DONE:
         return code
     log_events(m, s, c, t_next)
     add(s.impulse, 1.0, c.p, c.n)
-    return project(m, plan, s, c, t_next) if c.projected else FINISHED
+    return project(m, plan, s, c, t_next) if c.projected else DONE
 
 
 def predict_active(m: Model, plan: Plan, s: State, c: Rows, t: float) -> None:
@@ -133,15 +127,15 @@ def step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> in
     if not begin_step(m, plan, s, c, t, t_next):
         return NOT_FINITE
     code = iterate(m, plan, s, c, t, t_next)
-    if code != FINISHED:
+    if code != DONE:
         return code
     position(plan, s)
     if c.n_j == 0:
-        return FINISHED
+        return DONE
     hold = joints_hold(
         c.J, c.J_t, c.J_start, c.n_j, s.v, s.v_free, s.next_v, s.n_q, plan.X, c.p, c.n, c.turning, c.failed
     )
-    return FINISHED if hold else JOINTS_FAILED
+    return DONE if hold else JOINTS_FAILED
 
 
 def begin_step(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> bool:
@@ -172,7 +166,7 @@ def iterate(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) ->
     idle, once = 0, m.linear and not c.turning
     while True:
         code = find_impulses(m, plan, s, c, t, t_next)
-        if code != FINISHED:
+        if code != DONE:
             return code
         n_k = s.active + c.n_f + c.n_j
         if once and c.n_f == 0:
@@ -189,7 +183,7 @@ def iterate(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) ->
             idle = leave_out_idle(s, c, idle)
     if c.coefficients.two or c.n_f > 1:
         note_sticking(s, c, s.active, c.n_f)
-    return FINISHED if idle == 0 or take_back_idle(s, c, idle) else NEWTON_FAILED
+    return DONE if idle == 0 or take_back_idle(s, c, idle) else NEWTON_FAILED
 
 
 def find_impulses(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: float) -> int:
@@ -201,7 +195,7 @@ def find_impulses(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: flo
     if not finite(s.v_free, s.n_q):
         return NOT_FINITE
     if s.active + c.n_j == 0:
-        return FINISHED
+        return DONE
     c.problem.again = s.iteration >= SETTLED
     if not c.solved:
         c.blows.several = s.active > 1 and not c.in_turn and separates(plan, s, c, c.blows, s.active)
@@ -211,7 +205,7 @@ def find_impulses(m: Model, plan: Plan, s: State, c: Rows, t: float, t_next: flo
         if c.n_j > 0 or not plan.constant:
             prepare(m, plan, s, c, s.active, t_next)
         code = impulses(m, plan, s, c, s.active, t_next, True)
-    c.solved = c.solved and code != FINISHED
+    c.solved = c.solved and code != DONE
     return code
 
 
