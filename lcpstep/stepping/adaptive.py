@@ -14,7 +14,7 @@ from lcpstep.stepping.steps import WHOLE
 WANTED = -3
 LEVELS = 52  # halvings of the longest step, at most
 OWN = LEVELS + 2  # place of the matrices of a part as long as no level's; those of its halves come next
-NOISE = 8 * RESOLUTION  # relative differences that are rounding
+ROUNDED = 8 * RESOLUTION  # relative differences that are rounding
 PLENTY = 0.8  # of the share, that twice the step is expected to take where it is tried
 LEAST_SHARE = 1e-3  # of the tolerance, in steps with events, or with a force that jumps
 NEAR = 3.0  # errors of what ends a piece or a mode: from where on it may have come to zero

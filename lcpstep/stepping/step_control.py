@@ -31,11 +31,11 @@ from lcpstep.kernels.record import Record
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import BUFFER_FULL, DONE, STEP_TOO_SMALL
 from lcpstep.pointers import abs, inf, max, min
-from lcpstep.stepping.adaptive import LEAST_SHARE, LEVELS, NOISE, PLENTY, WANTED, sizes
+from lcpstep.stepping.adaptive import LEAST_SHARE, LEVELS, PLENTY, ROUNDED, WANTED, sizes
 
 ACCEPTED, AGAIN, GIVEN_UP = range(3)  # verdicts
 ROWS = 8  # that a step may keep besides the times asked for
-LATE = 2.0 * RESOLUTION  # of a time: no shorter step shows less than what that makes of a motion
+TICK = 2.0 * RESOLUTION  # of a time: no shorter step shows less than what that makes of a motion
 FLAT = 3.0  # an error that half the step makes smaller by less than this comes from a jump
 JUMPS = 16  # steps in a row that may hold one each: more of them have errors that no step is short enough for
 
@@ -190,13 +190,13 @@ class Control(Course):
         """Whether the step attempted is accepted; sets the next one's place and level."""
         level, h = self.level, self.step_size(self.level)
         size_q, size_v = max(self.size_q, self.far_q), max(self.size_v, self.far_v)
-        late = LATE * abs(self.now())
+        late = TICK * abs(self.now())
         wrong_q, wrong_v = self.apart_q - late * self.far_v, self.apart_v - late * self.acceleration
         error = relative_error(wrong_q, wrong_v, size_q, size_v, self.tolerance)
         share = (min(self.cut, h) - self.into) / self.span
         jumps = self.position < self.until and FLAT * error > self.last and self.jumped < JUMPS
         allowed = self.tolerance * (max(share, LEAST_SHARE) if self.happened or jumps else share)
-        if self.tolerance < NOISE or self.hopeless:  # no step is that good
+        if self.tolerance < ROUNDED or self.hopeless:  # no step is that good
             return GIVEN_UP
         if self.failed or not error <= allowed:
             self.last = inf if self.failed else error
@@ -217,7 +217,7 @@ class Control(Course):
     def pass_by(self, time: float) -> bool:
         """Go on to a time since the base, at most to the next multiple of the step; whether it lies still ahead."""
         h = self.step_size(self.level)
-        rounding = NOISE * (abs(self.now()) + h)
+        rounding = ROUNDED * (abs(self.now()) + h)
         self.into = max(self.into, min(time, h))
         if self.into < h - rounding:
             return True
@@ -253,7 +253,7 @@ class Control(Course):
 
 def relative_error(wrong_q: float, wrong_v: float, size_q: float, size_v: float, tolerance: float) -> float:
     """The larger error of positions and velocities, relative to 1 + the size of the motion, beyond rounding."""
-    return max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v)) - min(NOISE, LEAST_SHARE * tolerance)
+    return max(wrong_q / (1.0 + size_q), wrong_v / (1.0 + size_v)) - min(ROUNDED, LEAST_SHARE * tolerance)
 
 
 def stamp(r: Record, row: int, event: int, late: float, t: float) -> None:

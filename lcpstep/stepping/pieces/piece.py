@@ -23,6 +23,7 @@ from lcpstep.stepping.pieces.smooth import (
     ON_THE_SURFACE,
     accelerate,
     advance,
+    gap_accelerations,
     gap_bias,
     look_along,
     measure,
@@ -53,8 +54,7 @@ def begin_piece(m: Model, plan: Plan, w: Work, t: float) -> bool:
         flat_accelerations(m, plan, w, t)
     elif needs_bias(plan, w):
         gap_bias(m, w, within(w, t), w.q, w.v)
-        for c in range(n_c):
-            w.alpha[c] = product(w.G, w.a_free, c, w.n_q) + w.bias[c]
+        gap_accelerations(w, w.a_free)
     if closed and not plan.constant and not renew_mobility(m, plan, w, t):
         return False
     if not hold(m, plan, w, place, t):

@@ -25,7 +25,7 @@ from lcpstep.kernels.turn import Turn
 from lcpstep.kernels.vectors import add, clear, copy, product, product_between
 from lcpstep.pointers import Doubles, after, max
 from lcpstep.stepping.pieces.codes import CLOSED
-from lcpstep.stepping.pieces.smooth import free_acceleration, gap_bias, respond
+from lcpstep.stepping.pieces.smooth import free_acceleration, gap_accelerations, gap_bias, respond
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
 
@@ -101,8 +101,7 @@ def constrained(m: Model, plan: Plan, w: Work, t: float, q: Doubles, v: Doubles,
     biases(m, w, t, q, v)
     if not plan.constant:
         respond(m, w)
-    for c in range(w.n_c):
-        w.alpha[c] = product(w.G, out, c, w.n_q) + w.bias[c]
+    gap_accelerations(w, out)
     factor_closed(w)
     press(w, out, 1.0)
     return True

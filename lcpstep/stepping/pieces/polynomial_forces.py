@@ -18,7 +18,7 @@ from lcpstep.stepping.pieces.contact_forces import hold
 from lcpstep.stepping.pieces.keep import keep_event
 from lcpstep.stepping.pieces.polynomial import Polynomial, acceleration, biases
 from lcpstep.stepping.pieces.scan import SOON
-from lcpstep.stepping.pieces.smooth import free_acceleration, respond
+from lcpstep.stepping.pieces.smooth import free_acceleration, gap_accelerations, respond
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
 
@@ -78,8 +78,7 @@ def decide(m: Model, plan: Plan, w: Work, at: float, q: Doubles, v: Doubles, t: 
     n_c, before = w.n_c, w.record.event
     gap_rates(m, at, q, v, w.G, w.gap_t)
     biases(m, w, at, q, v)
-    for c in range(n_c):
-        w.alpha[c] = product(w.G, w.a_free, c, w.n_q) + w.bias[c]
+    gap_accelerations(w, w.a_free)
     if (w.closed_now > 0 or w.touching) and not plan.constant:
         respond(m, w)
     if not hold(m, plan, w, WHOLE, t):

@@ -57,7 +57,7 @@ class LocatedRun(StepRun):
         code = int(self.loop.begin(self.scene.t_span[0]))
         p, tolerance = self.plan, self.method.tolerance
         # Steps that make no error are of one size
-        if tolerance is not None and not (p.plain and p.steady and tolerance >= adaptive.NOISE):
+        if tolerance is not None and not (p.plain and p.steady and tolerance >= adaptive.ROUNDED):
             self.plan, order = Plan(p.fields | {"many": MANY_EXACTLY}), int(self.method.order)
             span, h = self.scene.t_span, self.method.h
             self.controlled_by(

@@ -22,7 +22,7 @@ from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.status import DONE, LCP_FAILED, NOT_FINITE
-from lcpstep.kernels.vectors import add, product
+from lcpstep.kernels.vectors import add
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.pieces.chosen import solve_chosen
 from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, STOPS
@@ -31,6 +31,7 @@ from lcpstep.stepping.pieces.keep import keep_event
 from lcpstep.stepping.pieces.magnitudes import speed_terms
 from lcpstep.stepping.pieces.refine import NONE
 from lcpstep.stepping.pieces.smooth import (
+    gap_accelerations,
     gap_bias,
     measure,
     put_on_surface,
@@ -74,8 +75,8 @@ def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:
     gap_bias(m, w, within(w, t), w.q, w.v)
     if not renew_mobility(m, plan, w, t):
         return False
+    gap_accelerations(w, w.a_free)
     for c in range(n_c):
-        w.alpha[c] = product(w.G, w.a_free, c, w.n_q) + w.bias[c]
         if w.gap[c] <= plan.slack:
             w.gap[c] = 0.0
         w.chosen[c], w.z[c], w.before[c] = c, 0.0, w.velocity[c]

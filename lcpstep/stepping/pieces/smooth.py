@@ -119,6 +119,12 @@ def gap_bias(m: Model, w: Work, t: float, q: Doubles, v: Doubles) -> None:
     bias(m, t, w.low, w.high, q, v, w.q_try, w.G_try, w.gap_t_try, w.bias)
 
 
+def gap_accelerations(w: Work, a: Doubles) -> None:
+    """Gap accelerations under the acceleration a, without contact forces, into w.alpha."""
+    for c in range(w.n_c):
+        w.alpha[c] = product(w.G, a, c, w.n_q) + w.bias[c]
+
+
 def measure(m: Model, w: Work, t: float) -> None:
     """Gaps and gap velocities at the base of the piece; zero where a contact is closed."""
     gaps(m, t, w.q, w.v, w.gap)

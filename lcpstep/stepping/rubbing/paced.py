@@ -22,7 +22,7 @@ from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 from lcpstep.kernels.vectors import copy, distance, largest
 from lcpstep.pointers import abs, after, inf, max, min
-from lcpstep.stepping.adaptive import LEAST_SHARE, NEAR, NOISE
+from lcpstep.stepping.adaptive import LEAST_SHARE, NEAR, ROUNDED
 from lcpstep.stepping.rubbing.found import curve, measure_base, note_arrival, note_middle
 from lcpstep.stepping.rubbing.let_go import is_motion
 from lcpstep.stepping.rubbing.strides import Strides, go_on_with, push_end_back
@@ -56,8 +56,8 @@ def pace(s: Strides, t: float, longest: float) -> int:
         allowed = share * s.tolerance
         if error <= allowed:
             break
-        if h <= 4.0 * RESOLUTION * max(abs(t), s.span) or s.tolerance < NOISE:
-            if not error < inf or s.tolerance < NOISE or t + h >= s.clock.high:
+        if h <= 4.0 * RESOLUTION * max(abs(t), s.span) or s.tolerance < ROUNDED:
+            if not error < inf or s.tolerance < ROUNDED or t + h >= s.clock.high:
                 return why(s, error)
             s.clock.break_at(t + h)
             s.length = 0.0

@@ -13,7 +13,7 @@ from lcpstep.pointers import abs
 from lcpstep.stepping.theta_method.moving import Rows, State
 from lcpstep.stepping.theta_method.row_impulses import take_part
 
-ALIKE = 1e-2  # of a gap velocity's terms: by so much what is left out may close
+MAY_CLOSE = 1e-2  # of a gap velocity's terms: by so much what is left out may close
 
 
 def leave_out_idle(s: State, c: Rows, idle: int) -> int:
@@ -38,7 +38,7 @@ def take_back_idle(s: State, c: Rows, idle: int) -> bool:
         i = c.left_out[k]
         u = product(c.H, s.next_v, i, s.n_q) + c.H_t[i]
         terms = size_of_product(c.H, s.next_v, i, s.n_q) + size_of_product(c.H, s.v_free, i, s.n_q)
-        if u < -ALIKE * (terms + abs(c.H_t[i])):
+        if u < -MAY_CLOSE * (terms + abs(c.H_t[i])):
             return False
         c.problem.ids[s.active + k] = i
     s.active += idle

@@ -26,7 +26,7 @@ from lcpstep.stepping.theta_method.turned_rows import put_rows_on_joints, sweep_
 
 ALIKE = 1e-6  # relative: velocities that two ways to share a load leave, where both are found by turns,
 LESS = 0.5  # which is where they change by no less than this share of the last change
-UNTOLD = 1e-9  # of the terms of a rate: what joints may leave of it where they leave nothing of its row
+LEAVES = 1e-9  # of the terms of a rate: what joints may leave of it where they leave nothing of its row
 
 
 def impulses(m: Model, plan: Plan, s: State, c: Rows, n_a: int, t_next: float, rebounds: bool) -> int:
@@ -97,7 +97,7 @@ def without_joints(m: Model, plan: Plan, s: State, c: Rows, n_a: int, rebounds: 
         sweep_out_turned(c.elimination, m.linear, plan, s, c, n, n_k)
     if c.n_j > 0:
         for k in range(n):
-            if not R[k * n + k] > 0.0 and abs(rate[k]) <= UNTOLD * size_of_rate(c, c.blows.v, ids[k], s.n_q):
+            if not R[k * n + k] > 0.0 and abs(rate[k]) <= LEAVES * size_of_rate(c, c.blows.v, ids[k], s.n_q):
                 rate[k] = 0.0
     return impact
 
