@@ -322,3 +322,17 @@ def test_what_goes_wrong_while_a_contact_is_closed_is_no_lack_of_forces(name, me
     expected = np.stack([m.t - 0.5 * rough * m.t**2, (scene.n_j > 0) * m.t**2], axis=1)  # mu g = 1
     before = m.t <= 0.5  # a step that failed may end in the air
     np.testing.assert_allclose(m.q[before], expected[before], rtol=0, atol=1e-9)
+
+
+def endless_level(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 0.0, 1.0 if t <= 0.1 else math.inf
+
+
+@pytest.mark.parametrize("method", [EventDriven(), Located(1e-2), Located(1e-2, order=4)])
+def test_an_infinite_jacobian_ends_the_run_of_what_falls_towards_a_rough_floor(method):
+    contacts = Contacts(1, level, endless_level, friction=ROUGH)
+    system = LinearSystem(M=np.eye(2), force=[0.0, -10.0])
+    scene = Scene(system, q0=[0.0, 0.2], v0=[1.0, 0.0], t_span=(0.0, 0.8), contacts=contacts)
+    with pytest.raises(SimulationError, match=r"^contacts\.jacobian: .*inf") as caught:
+        simulate(scene, method)
+    assert 0.1 <= caught.value.trajectory.t[-1] < 0.2 + 1e-9  # the impact, whose impulse nobody knows

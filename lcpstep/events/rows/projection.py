@@ -36,7 +36,7 @@ def project(s: Rows, t: float, y: Doubles) -> bool:
 def put_on_rows(s: Rows, t: float, y: Doubles) -> bool:
     """Put q onto the rows held, along the ways of those at hand while these help; False where no place is found.
 
-    By Newton's method; what has pushed is left in `held`. A gap that is no number at the start moves nothing.
+    By Newton's method; what has pushed is left in `held`. Of a gap that is no number nor is the position.
     """
     before, anew = inf, False
     clear(s.held, s.n_held)
@@ -44,7 +44,8 @@ def put_on_rows(s: Rows, t: float, y: Doubles) -> bool:
         if not are_open(s, t, y) or (k > 0 and none_open(s, y, CLOSED)):
             return True
         if k == 0 and not finite(s.change, s.n_held):
-            return False
+            push_by_change(s, y)
+            return True
         worst = largest(s.change, 0.0, s.n_held)
         helps = worst < HELPS * before
         if anew and not helps:

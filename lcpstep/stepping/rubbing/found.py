@@ -75,22 +75,24 @@ def widen_bands(s: Strides) -> None:
 
 
 def note(s: Strides, t: float, y: Doubles, v: Doubles, dy: Doubles, value: Doubles, slope: Doubles) -> bool:
-    """Guards at a state whose rates and forces are known, and slopes of gaps and sliding velocities.
+    """Guards at a state whose rates and forces are known, and slopes of gaps and sliding velocities, all finite.
 
     v : the velocity on the rows held
     """
     if not read_with_rates(s, t, y):
         return False
     copy(value, s.value, GUARDS * s.n_c)
-    a = after(dy, s.n_q)
+    a, total = after(dy, s.n_q), 0.0
     for c in range(s.n_c):
         i = s.n_j + c
         if s.mode[c] == OPEN:
             slope[GUARDS * c] = velocity_of(s.rows, i, v)
+            total += slope[GUARDS * c]
         elif s.mode[c] == SLIDES and rubs(s.rows, c):
             turn = acceleration_of(s.rows, i + s.n_c, a)
             slope[GUARDS * c + 1] = s.direction[c] * turn
-    return True
+            total += turn
+    return total - total == 0.0
 
 
 def note_bends(s: Strides, t: float, y: Doubles, dy: Doubles, bend: Doubles) -> None:

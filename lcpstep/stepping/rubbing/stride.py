@@ -24,7 +24,7 @@ from lcpstep.events.rows.loads import list_by_row
 from lcpstep.events.rows.projection import project
 from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, PROJECTION_FAILED
-from lcpstep.kernels.vectors import add, copy, finite, product
+from lcpstep.kernels.vectors import add, copy, product
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.rubbing.found import (
     NOWHERE,
@@ -140,8 +140,7 @@ def attempt(s: Strides, t: float, h: float) -> int:
 def failed(s: Strides) -> int:
     """Why there was no step."""
     if s.astray >= 0:
-        unknown = finite(s.y_new, s.n_q) and not finite(s.rows.change, s.rows.n_held)
-        return NOT_FINITE if unknown else PROJECTION_FAILED
+        return PROJECTION_FAILED
     return PAINLEVE_INCONSISTENT if s.rows.culprit >= 0 else NOT_FINITE
 
 
