@@ -180,10 +180,10 @@ class Run(Portions):
         return self.recorder.states()
 
     def known(self, s: States) -> States:
-        """The states kept before the first that is not finite."""
-        if all(map(all_finite, (s.q, s.v, *self.state))):
+        """The states kept before the first that is not finite, or whose impulses are not."""
+        if all(map(all_finite, (s.q, s.v, s.impulse, *self.state))):
             return s
-        fine = np.asarray(np.isfinite(np.hstack([s.q, s.v])).all(axis=1))
+        fine = np.asarray(np.isfinite(np.hstack([s.q, s.v, s.impulse])).all(axis=1))
         s = States(*(x[: len(fine) if fine.all() else int(np.argmin(fine))] for x in s))
         if len(s.t):
             self.finite = float(s.t[-1]), s.q[-1], s.v[-1]
@@ -221,6 +221,8 @@ class Run(Portions):
     def trajectory(self, code: int) -> Any:
         """Everything computed so far."""
         s = self.known(self.states())
+        if self.finite is not None and code == Status.DONE:
+            code = Status.NOT_FINITE  # what the last step leaves is asked for by none after it
         impulse, friction, joint = self.shares(s)
         return Trajectory(
             scene=self.scene, method=self.method, t=s.t, q=s.q, v=s.v, impulse=impulse,

@@ -336,3 +336,23 @@ def test_an_infinite_jacobian_ends_the_run_of_what_falls_towards_a_rough_floor(m
     with pytest.raises(SimulationError, match=r"^contacts\.jacobian: .*inf") as caught:
         simulate(scene, method)
     assert 0.1 <= caught.value.trajectory.t[-1] < 0.2 + 1e-9  # the impact, whose impulse nobody knows
+
+
+def late_level(t, q, v, p, out):
+    out[0, 0], out[0, 1] = 0.0, 1.0 if t <= 0.8 - 5e-5 else math.nan
+
+
+def lift(t, q, v, p, out):
+    out[0] = q[1] - t * t
+
+
+def test_impulses_of_the_step_that_fails_are_not_handed_over():
+    scene = Scene(
+        LinearSystem(M=np.eye(2), force=[0.0, -10.0]), q0=[0.0, 0.0], v0=[1.0, 0.0], t_span=(0.0, 0.8),
+        contacts=Contacts(1, lift, late_level, lift_t),
+    )  # fmt: skip
+    with pytest.raises(SimulationError, match=r"^contacts\.jacobian: ") as caught:
+        simulate(scene, Located(1e-2, order=4))
+    impulse = caught.value.trajectory.impulse
+    np.testing.assert_allclose(impulse[1:, 0], 12e-2, rtol=1e-9)  # (g + 2) h
+    assert len(impulse) >= 80
