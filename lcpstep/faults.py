@@ -8,8 +8,7 @@ run to raise from.
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -54,17 +53,17 @@ def fault() -> Fault | None:
     return getattr(LOCAL, "fault", None)
 
 
-@contextmanager
-def apart() -> Generator[None, None, None]:
-    """For a run, of which nothing but an unheard interrupt is noted later: a callback of another may have made it."""
-    before, asking = fault(), getattr(LOCAL, "asking", False)
-    forget_all()
-    try:
-        yield
-    finally:
-        LOCAL.asking = asking
-        if not interrupted():
-            LOCAL.fault = before
+def set_aside() -> tuple[Fault | None, bool]:
+    """What this thread has noted, for a run of its own, which a callback of another may have made."""
+    before = fault(), getattr(LOCAL, "asking", False)
+    LOCAL.fault = None
+    return before
+
+
+def take_up(before: tuple[Fault | None, bool]) -> None:
+    """What was set aside, in the place of all that was noted since but an interrupt that is still to be heard."""
+    if not interrupted():
+        LOCAL.fault, LOCAL.asking = before
 
 
 def forget_all() -> None:

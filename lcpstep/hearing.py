@@ -16,7 +16,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from lcpstep.faults import LOCAL, Fault, apart, cause, interrupted, note
+from lcpstep.faults import LOCAL, Fault, cause, interrupted, note, set_aside, take_up
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -93,16 +93,17 @@ def hearing(run: Callable[P, T]) -> Callable[P, T]:
 
     @wraps(run)
     def heard(*given: P.args, **named: P.kwargs) -> T:
+        before = set_aside()
         OPEN.runs += 1
         try:
             if EXPECTED and OPEN.handler is None:
                 _begin()
-            with apart():
-                made = run(*given, **named)
-                if interrupted():  # by what was called beside the motion
-                    cause()
-                return made
+            made = run(*given, **named)
+            if interrupted():  # by what was called beside the motion
+                cause()
+            return made
         finally:
+            take_up(before)
             OPEN.runs -= 1
             if OPEN.runs == 0 and OPEN.handler is not None:
                 _end()

@@ -177,7 +177,7 @@ class Run(Portions):
     def states(self) -> States:
         """All states kept, and the last one where states are kept by steps or events."""
         self.empty()
-        return self.recorder.states()
+        return self.known(self.recorder.states())
 
     def known(self, s: States) -> States:
         """The states kept before the first that is not finite, or whose impulses are not."""
@@ -220,7 +220,7 @@ class Run(Portions):
 
     def trajectory(self, code: int) -> Any:
         """Everything computed so far."""
-        s = self.known(self.states())
+        s = self.states()
         if self.finite is not None and code == Status.DONE:
             code = Status.NOT_FINITE  # what the last step leaves is asked for by none after it
         impulse, friction, joint = self.shares(s)

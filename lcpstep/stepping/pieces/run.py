@@ -132,15 +132,14 @@ class LocatedRun(StepRun):
         """All states kept; a step that failed may have left its numbers behind."""
         self.put_back(self.recorder.record.row)
         s = super().states()
-        known = self.known(s)
-        if known is s:
+        if self.finite is None and s.t.size > 0:
             return s
         m = self.before_failing()
         if m is not None and (self.finite is None or m.t[-1] > self.finite[0]):
             self.finite = float(m.t[-1]), m.q[-1], m.v[-1]
             if not self.kept.given:
-                return known.and_then(*self.finite, m.impulse[-1], 1.0)
-        return known
+                return s.and_then(*self.finite, m.impulse[-1], 1.0)
+        return s
 
     def before_failing(self) -> Trajectory | None:
         """Another run up to the step that failed; None where its beginning is kept."""
