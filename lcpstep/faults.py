@@ -18,8 +18,6 @@ from lagrangian.checks import shown
 
 Array = NDArray[np.float64]
 Callback = Callable[..., Any]  # f(t, q, v, p, out) or f(t, x, p, out)
-# Of a thread: .fault, the first exception since `forget`; .asking, whether a user's function is at work in Python
-LOCAL = threading.local()
 
 
 class Fault(NamedTuple):
@@ -37,6 +35,16 @@ class Fault(NamedTuple):
         return f"{self.name} at {at}: {self.said}"
 
 
+class Noted(threading.local):
+    """Of a thread: the first exception since `forget`, and whether a user's function is at work in Python."""
+
+    fault: Fault | None = None
+    asking: bool = False
+
+
+LOCAL = Noted()
+
+
 def name_of(f: Callback) -> str:
     """The name that the user has given."""
     return str(getattr(f, "__qualname__", None) or type(f).__qualname__)
@@ -50,12 +58,12 @@ def note(noted: Fault) -> None:
 
 def fault() -> Fault | None:
     """The first exception of a callback in this thread since `forget`."""
-    return getattr(LOCAL, "fault", None)
+    return LOCAL.fault
 
 
 def set_aside() -> tuple[Fault | None, bool]:
     """What this thread has noted, for a run of its own, which a callback of another may have made."""
-    before = fault(), getattr(LOCAL, "asking", False)
+    before = LOCAL.fault, LOCAL.asking
     LOCAL.fault = None
     return before
 

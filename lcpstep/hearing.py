@@ -50,7 +50,7 @@ def _is_between(frame: FrameType | None) -> bool:
     """Whether C waits for the code at work, and the user's function is not at work, which has its own way out."""
     while frame is not None and frame.f_code not in BETWEEN:
         frame = frame.f_back
-    return frame is not None and not getattr(LOCAL, "asking", False)
+    return frame is not None and not LOCAL.asking
 
 
 class Open(threading.local):

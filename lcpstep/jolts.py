@@ -11,7 +11,7 @@ from __future__ import annotations
 from math import floor, isinf
 from weakref import WeakKeyDictionary
 
-from lagrangian import LinearSystem, Scene
+from lagrangian import Scene
 from lcpstep.trajectory import Trajectory
 
 KNOWN: WeakKeyDictionary[Scene, list[float]] = WeakKeyDictionary()  # a scene's functions stay what they are
@@ -20,18 +20,18 @@ KNOWN: WeakKeyDictionary[Scene, list[float]] = WeakKeyDictionary()  # a scene's 
 def jolted(run: Trajectory) -> str:
     """When the velocity of the frame has jumped in a run whose steps do not see that, in words; "" if it has not."""
     from lcpstep.model import at_hand
-    from lcpstep.turns import jolts
 
     scene, m = run.scene, at_hand(run.scene)
-    if not isinstance(scene.system, LinearSystem) or scene.system.frame is None or len(run.t) == 0:
+    if getattr(scene.system, "frame", None) is None or (m is not None and m.carried) or len(run.t) == 0:
         return ""
-    if m is not None and m.carried:
-        return ""
+    known = KNOWN.get(scene)
+    if known is None:
+        from lcpstep.turns import jolts
+
+        known = KNOWN[scene] = jolts(scene).tolist()
     begin, end, period = scene.t_span[0], float(run.t[-1]), scene.period
-    if scene not in KNOWN:
-        KNOWN[scene] = jolts(scene).tolist()
-    later = (x if isinf(period) else x + (1 + floor((begin - x) / period)) * period for x in KNOWN[scene])
-    t = min((x for x in later if begin < x < end), default=None)
+    later = [x if isinf(period) else x + (1 + floor((begin - x) / period)) * period for x in known]
+    t = min((x for x in later if begin < x < end), default=None) if later else None
     if t is None:
         return ""
     return (
