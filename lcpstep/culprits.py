@@ -27,8 +27,9 @@ def failing(scene: Scene, times: Iterable[float], q: Array, v: Array) -> str:
     It is asked for at the state that the motion has reached, and at those that this leads to in a straight line.
     """
     raised, times = fault(), list(times)
-    times += [times[-1] + later for later in BEYOND if times]
-    states = [(t, q, v) for t in times] + [(t, q + (t - times[0]) * v, v) for t in times]
+    beyond = [times[-1] + later for later in BEYOND if times]
+    states = [(t, q, v) for t in times] + [(t, q + (t - times[0]) * v, v) for t in times + beyond]
+    states += [(t, q, v) for t in beyond]
     # Coefficients of friction have sliding velocities in their place
     if raised is not None and len(raised.v) == scene.n_q:
         states = [(raised.t, raised.q, raised.v)]

@@ -43,6 +43,7 @@ class Noted(threading.local):
 
 
 LOCAL = Noted()
+NOTHING = None, False  # what a thread has noted outside of all runs
 
 
 def name_of(f: Callback) -> str:
@@ -70,8 +71,9 @@ def set_aside() -> tuple[Fault | None, bool]:
 
 def take_up(before: tuple[Fault | None, bool]) -> None:
     """What was set aside, in the place of all that was noted since but an interrupt that is still to be heard."""
+    LOCAL.asking = before[1]
     if not interrupted():
-        LOCAL.fault, LOCAL.asking = before
+        LOCAL.fault = before[0]
 
 
 def forget_all() -> None:

@@ -16,7 +16,7 @@ from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 
-from lcpstep.faults import LOCAL, Fault, cause, interrupted, note, set_aside, take_up
+from lcpstep.faults import LOCAL, NOTHING, Fault, cause, interrupted, note, set_aside, take_up
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -103,7 +103,7 @@ def hearing(run: Callable[P, T]) -> Callable[P, T]:
                 cause()
             return made
         finally:
-            take_up(before)
+            take_up(before if OPEN.runs > 1 else NOTHING)
             OPEN.runs -= 1
             if OPEN.runs == 0 and OPEN.handler is not None:
                 _end()

@@ -83,12 +83,15 @@ def _near(m: Model, t: float, q: Array) -> list[tuple[int, int, Array]]:
     sizes = np.einsum("ij,ij->i", N, N)
     both = sizes[:, None] * sizes
     alike = (both - np.maximum(N @ N.T, 0.0) ** 2 <= SAME * both) & (both > 0.0)
-    pairs = [(c, d) for c, d in np.argwhere(alike).tolist() if c < d]
-    if not pairs:
+    first, second = np.nonzero(alike)
+    pairs = first < second
+    if not np.any(pairs):
         return []
+    c, d = first[pairs], second[pairs]
     g = np.asarray(gaps_at(m, at, here)[0]) / np.sqrt(np.maximum(sizes, np.finfo(float).tiny))
     scale = 1e-8 * max(1.0, float(np.max(np.abs(q))))
-    return [(c, d, N[c]) for c, d in pairs if abs(g[c] - g[d]) <= scale]
+    close = np.abs(g[c] - g[d]) <= scale
+    return [(i, j, N[i]) for i, j in zip(c[close].tolist(), d[close].tolist(), strict=True)]
 
 
 def _rough(

@@ -95,10 +95,11 @@ def simulate(
     -------
     Trajectory, or HybridTrajectory of a system with modes; its `status` is DONE, or says why the run ended before the
         end of the span; `doubt` says where a run lies as deep inside an obstacle as its motion is large, where an
-        obstacle leaves no room to it, leaps, or its gap has no gradient where it is met, or is positive on both sides
-        of it, where steps are too long for the forces that it meets, lose energy, turn by more than a radian what
-        holds the motion, see no period of its oscillations or of its hops, or make it faster than forces and
-        obstacles could, or where contacts slide that share a normal, with friction in two directions
+        obstacle leaves no room to it, leaps, or its gap has no gradient where it is met, or is positive on both
+        sides of it, where the velocity of a frame jumps, where steps are too long for the forces that it meets,
+        lose energy, turn by more than a radian what holds the motion, see no period of its oscillations or of its
+        hops, or make it faster than forces and obstacles could, or where contacts slide that share a normal, with
+        friction in two directions
 
     Raises
     ------

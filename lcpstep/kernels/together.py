@@ -16,9 +16,7 @@ from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import size_of_product
 from lcpstep.pointers import Doubles, abs, min
 
-CROSSED = (
-    1000.0  # roundings of a gap: so far off a contact may be while another one crosses that of its own gap
-)
+CROSSED = 1000.0  # roundings of a gap: so far off a contact may be while another one crosses its own
 SAME_OUTCOME, TURNS = 1e-10, 64  # of impacts in turn: relative difference of speeds; impacts of each contact
 
 

@@ -26,9 +26,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lcpstep.events.scan import GOLDEN
 from lcpstep.lcp.factor import Singular
 from lcpstep.stepping.sparse_updates import Lines
+from lcpstep.turns.source import GOLDEN
 
 if TYPE_CHECKING:
     from lcpstep.stepping.sparse_coulomb import Coupled, Problem

@@ -119,7 +119,7 @@ class StepRun(Run):
             q, v = np.array(self.scene.q0), np.array(self.scene.v0)
             s = s.and_then(self.scene.t_span[0], q, v, np.zeros(s.impulse.shape[1]))
         if not self.kept.given and self.now > s.t[-1]:
-            s = s.and_then(self.now, *self.state, self.impulse, 1.0)
+            s = self.known(s.and_then(self.now, *self.state, self.impulse, 1.0))
         if len(s.t) and abs(s.t[-1] - end) <= unresolved(self.scene.t_span, self.method.h):
             s.t[-1] = end
         return s

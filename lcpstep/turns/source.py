@@ -181,13 +181,14 @@ def sources(scene: Scene) -> list[Source]:
     return [Source(name, f, also, at[also is None], rows) for name, f, also, rows in users]
 
 
-def ready_frame(scene: Scene) -> Source | None:
-    """The frame of a scene where it is one of the ready functions, which name their corners."""
+def frame_of(scene: Scene) -> tuple[Source | None, bool]:
+    """The frame of a scene, and whether it is one of the ready functions, which name their corners."""
     system: Any = scene.system
-    if not isinstance(system, LinearSystem) or system.frame is None or not _ours(system.frame):
-        return None
+    if not isinstance(system, LinearSystem) or system.frame is None:
+        return None, False
     nowhere = np.zeros(scene.n_q)
-    return Source(FRAME, system.frame, None, (nowhere, nowhere, np.array(scene.p)), scene.n_q)
+    found = Source(FRAME, system.frame, None, (nowhere, nowhere, np.array(scene.p)), scene.n_q)
+    return found, _ours(system.frame)
 
 
 def belts(scene: Scene) -> list[Source]:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.intervals import NotEnclosed
 from lcpstep.turns.refine import APART, JUMP, LITTLE, MUCH, Leaves, jump_times, leaves
-from lcpstep.turns.source import FRAME, Source, belts, ready_frame, sources
+from lcpstep.turns.source import FRAME, Source, belts, frame_of, sources
 from lcpstep.warned import warn
 
 Array = NDArray[np.float64]
@@ -26,6 +26,7 @@ SHORT = 0.25  # of them: leaves that are shorter are looked at by themselves
 EVEN = 0.5  # of the largest curve: by how much it may change where no look is needed
 NEAR = 1e-12  # of the period: stops that are one
 ROUNDING = 1e-15  # of a corner: it is where its function jumps, which may be just after it
+SPEEDS = 1024  # samples that tell how fast a frame is
 KEPT = 256  # scenes whose stops are remembered
 
 
@@ -78,11 +79,19 @@ def turns(scene: Scene, with_belts: bool = False) -> Turns:
 
 def jolts(scene: Scene) -> Array:
     """Times in [0, period), or in the span, at which the velocity of the frame jumps."""
-    ready, corners = ready_frame(scene), np.asarray(scene.corners, dtype=float)
-    if ready is None:
-        return turns(scene).jolts
-    jumps, _ = jumps_beside(ready, corners, _whole(scene))
-    return np.asarray(corners[jumps])
+    frame, ready = frame_of(scene)
+    corners = np.asarray(scene.corners, dtype=float)
+    if frame is None:
+        return NEVER
+    if ready:
+        every = sample_speeds(frame, _whole(scene))
+        return np.asarray(corners[jumps_beside(frame, corners, _whole(scene), every)[0]])
+    return _remembered((Key(frame),), _whole(scene), scene.period, tuple(corners.tolist())).jolts
+
+
+def sample_speeds(source: Source, span: tuple[float, float]) -> float:
+    """The largest speed of some samples."""
+    return float(np.max(np.abs(source.values(np.linspace(*span, SPEEDS))[..., 1])))
 
 
 def _whole(scene: Scene) -> tuple[float, float]:
@@ -125,7 +134,8 @@ def _remembered(
         stops += [corners_between(source, found), jump_at(source, found, ends)]
         jumps, times = jump_times(source, found.a[found.jumps], found.b[found.jumps])
         if source.name == FRAME:
-            jolts += [times, stops[-1], own[jumps_beside(source, own, span)[0]]]
+            at, fastest = np.concatenate([times, stops[-1], own]), sample_speeds(source, span)
+            jolts.append(at[jumps_beside(source, at, span, fastest)[0]])
         turned = short.copy()
         turned[found.jumps] = ~jumps
         stops.append(np.concatenate([found.a[turned], found.b[turned]]))
@@ -175,10 +185,12 @@ def at_jumps(source: Source, corners: Array, span: tuple[float, float]) -> Array
     return np.where(np.abs(moved - corners) > ROUNDING * np.abs(corners), moved, corners)
 
 
-def jumps_beside(source: Source, times: Array, span: tuple[float, float]) -> tuple[NDArray[np.bool_], Array]:
+def jumps_beside(
+    source: Source, times: Array, span: tuple[float, float], least: float = 0.0
+) -> tuple[NDArray[np.bool_], Array]:
     """At which times a speed jumps, but for some roundings, and when it does: see `jump_times`."""
     beside = 2.0 * APART * np.maximum(span[1] - span[0], np.abs(times))
-    return jump_times(source, times - beside, times + beside)
+    return jump_times(source, times - beside, times + beside, least)
 
 
 def _divided(source: Source, ends: Array, base: float) -> tuple[Source, Leaves | None]:

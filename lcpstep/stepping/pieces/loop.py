@@ -215,7 +215,7 @@ def end_step(plan: Plan, w: Work, t: float, stop: float) -> int:
     keep_now(w, late if late >= stop else t)
     w.steps += 1
     w.under_way = False
-    if not is_finite(w):
+    if not (is_finite(w) and finite(w.impulse, w.n_c)):
         return NOT_FINITE
     if w.record.is_due(w.steps):
         keep(w, t, 0.0)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from lagrangian import Scene
 from lcpstep.errors import SimulationError
 from lcpstep.gaps import no_way_out
+from lcpstep.kernels.looks import all_finite
 from lcpstep.model import model
 from lcpstep.recording import SPARE, Kept, Recorder, States
 from lcpstep.stepping import adaptive
@@ -132,13 +133,14 @@ class LocatedRun(StepRun):
         """All states kept; a step that failed may have left its numbers behind."""
         self.put_back(self.recorder.record.row)
         s = super().states()
-        if self.finite is None and s.t.size > 0:
+        if self.finite is None and (s.t.size > 0 or all(map(all_finite, self.state))):
             return s
         m = self.before_failing()
         if m is not None and (self.finite is None or m.t[-1] > self.finite[0]):
             self.finite = float(m.t[-1]), m.q[-1], m.v[-1]
             if not self.kept.given:
-                return s.and_then(*self.finite, m.impulse[-1], 1.0)
+                since = np.maximum(np.sum(m.impulse, axis=0) - np.sum(s.impulse, axis=0), 0.0)
+                return s.and_then(*self.finite, since, 1.0)
         return s
 
     def before_failing(self) -> Trajectory | None:
