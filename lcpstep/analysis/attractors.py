@@ -31,12 +31,18 @@ from lcpstep.analysis.sampled import STARTS, described
 from lcpstep.analysis.starts import random_starts as random_starts
 from lcpstep.analysis.variation import PeriodMap
 from lcpstep.events import EventDriven
-from lcpstep.maps.batch import Periods, periods
+from lcpstep.maps.batch import INSIDE, Periods, periods
+from lcpstep.maps.stroboscopic import StroboscopicMap
 from lcpstep.simulation import Method
 from lcpstep.trajectory import Status
+from lcpstep.warned import warn
 
 Array = NDArray[np.float64]
 AT_SECTION = 1e-9  # of the period: rounding decides on which side of the section such an impact is
+
+
+class NoneSettled(UserWarning):
+    """No run has come to an attractor."""
 
 
 def attractors(
@@ -98,6 +104,11 @@ def attractors(
         "transient": transient, "window": window, "longest": longest, "phase": phase,
         "tolerance": TOLERANCE if tolerance is None else tolerance,
     }  # fmt: skip
+    early = np.flatnonzero((runs.status != Status.DONE) & (runs.status != INSIDE))
+    if not found and len(early):
+        why = StroboscopicMap(scene, method, phase).why(runs.final[early[0]], Status(runs.status[early[0]]))
+        start = first[early[0]].tolist()
+        warn(f"{scene.name!r}: no run has settled; that from x = {start} ended early: {why}", NoneSettled)
     return Attractors(tuple(found), first, label, settings)
 
 

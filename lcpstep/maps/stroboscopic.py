@@ -83,18 +83,17 @@ class StroboscopicMap:
         if run.status[0] == INSIDE:
             raise ValueError(f"x: {x.tolist()} lies inside of the obstacle at t = {self.time:g} s")
         if run.status[0] != Status.DONE:
-            status = Status(run.status[0])
-            why = (
-                self._why(self.scene, run.final[0], status) if isinstance(self.scene, Scene) else status.name
-            )
+            why = self.why(run.final[0], Status(run.status[0]))
             raise LcpStepError(f"the motion from x = {x.tolist()} at t = {self.time:g} s ended early: {why}")
         return run
 
-    def _why(self, scene: Scene, last: Array, status: Status) -> str:
+    def why(self, last: Array, status: Status) -> str:
         """What a run says of the period from the last state on that has ended like this; else how it has."""
-        span = self.time, self.time + scene.period
+        if isinstance(self.scene, HybridScene):
+            return status.name
+        span = self.time, self.time + self.scene.period
         try:
-            run = simulate(continued(scene, last, span), self.method, keep=[span[1]])
+            run = simulate(continued(self.scene, last, span), self.method, keep=[span[1]])
         except SimulationError as error:
             run = error.trajectory
         return f"{status.name}, {run.message}" if run.status == status else status.name

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Kind, Moreau, simulate
+from lcpstep.analysis.attractors import NoneSettled, attractors
 from lcpstep.errors import LcpStepError
 from lcpstep.maps import ImpactMap, NoReturn, StroboscopicMap, iterate, periods
 from lcpstep.maps.batch import INSIDE, Targets
@@ -199,20 +200,26 @@ def test_many_periods_of_a_pendulum_between_two_stops_are_those_one_after_anothe
     assert (found.reached[0], found.taken[0]) == (0, first)
 
 
+def breaking(t, q, v, p, out):
+    if q[0] > 0.3:
+        raise RuntimeError("broken")
+    out[0] = 20.0 * math.sin(6.0 * t) - 9.81
+
+
+SPRING = Scene(
+    System(1, 1.0, breaking), 0.1, 0.0, (0.0, 1.0), LinearContacts(1.0, restitution=0.5), period=math.pi / 3.0
+)
+BROKEN = r"NOT_FINITE, system.force: .* failed at .*RuntimeError: broken"
+
+
 @pytest.mark.parametrize("method", [EventDriven(), Moreau(1e-3)], ids=str)
 def test_an_image_that_is_not_reached_says_what_a_callback_has_raised(method):
-    def spring(t, q, v, p, out):
-        if q[0] > 0.3:
-            raise RuntimeError("broken")
-        out[0] = 20.0 * math.sin(6.0 * t) - 9.81
+    with pytest.raises(LcpStepError, match=BROKEN):
+        iterate(StroboscopicMap(SPRING, method), [0.1, 0.0], 20)
 
-    scene = Scene(
-        System(1, 1.0, spring),
-        0.1,
-        0.0,
-        (0.0, 1.0),
-        LinearContacts(1.0, restitution=0.5),
-        period=math.pi / 3.0,
-    )
-    with pytest.raises(LcpStepError, match=r"NOT_FINITE, system.force: .* failed at .*RuntimeError: broken"):
-        iterate(StroboscopicMap(scene, method), [0.1, 0.0], 20)
+
+def test_attractors_that_no_run_comes_to_say_what_a_callback_has_raised():
+    with pytest.warns(NoneSettled, match=BROKEN):
+        found = attractors(SPRING, Moreau(1e-3), [[0.1, 0.0], [0.2, 0.0]], transient=20, window=4, longest=2)
+    assert found.found == ()
+    assert list(found.label) == [-1, -1]
