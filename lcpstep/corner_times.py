@@ -14,13 +14,17 @@ Array = NDArray[np.float64]
 
 def corner_times(scene: Scene, end: float, most: int) -> Array:
     """Those between the start of the span and a time, in their order; the first ones where they are more."""
-    own, (start, _) = np.asarray(scene.corners, dtype=np.float64), scene.t_span
+    return repeated(np.asarray(scene.corners, dtype=np.float64), scene.period, scene.t_span[0], end, most)
+
+
+def repeated(own: Array, period: float, start: float, end: float, most: int) -> Array:
+    """The same of times in [0, period), or anywhere where that is infinite, given in their order."""
     if not len(own):
         return np.zeros(0)
-    if math.isfinite(scene.period):
-        first = math.floor(start / scene.period)
-        last = min(math.floor(end / scene.period), first + most // len(own) + 1)
-        own = (np.arange(first, last + 1)[:, None] * scene.period + own).ravel()
+    if math.isfinite(period):
+        first = math.floor(start / period)
+        last = min(math.floor(end / period), first + most // len(own) + 1)
+        own = (np.arange(first, last + 1)[:, None] * period + own).ravel()
     return np.asarray(own[(own > start) & (own < end)][:most])
 
 

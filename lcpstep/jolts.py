@@ -8,16 +8,19 @@ rests, need none.
 
 from __future__ import annotations
 
-from math import floor, isinf
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lagrangian import LinearContacts, Scene
+from lcpstep.corner_times import repeated
+from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.trajectory import Trajectory
 
-KNOWN: WeakKeyDictionary[Scene, list[float]] = WeakKeyDictionary()  # a scene's functions stay what they are
-ROUNDINGS = 8.0 * float(np.finfo(float).eps)  # of a time: what rests of a sum of periods
+Array = NDArray[np.float64]
+KNOWN: WeakKeyDictionary[Scene, Array] = WeakKeyDictionary()  # a scene's functions stay what they are
+ROUNDED = 8.0 * RESOLUTION  # of a time: what rests of a sum of periods
 
 
 def jolted(run: Trajectory) -> str:
@@ -32,13 +35,17 @@ def jolted(run: Trajectory) -> str:
     if known is None:
         from lcpstep.turns import jolts
 
-        known = KNOWN[scene] = jolts(scene).tolist()
-    t = _first(known, scene.t_span[0], float(run.t[-1]), scene.period) if known else None
-    if t is None:
+        known = KNOWN[scene] = jolts(scene)
+    if not len(known):
+        return ""
+    begin, end = scene.t_span[0], float(run.t[-1])
+    rounding = ROUNDED * max(abs(begin), abs(end))  # not at the ends
+    times = repeated(known, scene.period, begin + rounding, end - rounding, 1)
+    if not len(times):
         return ""
     return (
-        f"the velocity of the frame jumps at t = {t:.9g} s, and the forces of a frame have no blow in them: take "
-        f"coordinates at rest, and obstacles that move{', or Located of order 2' if outside else ''}"
+        f"the velocity of the frame jumps at t = {times[0]:.9g} s, and the forces of a frame have no blow in them: "
+        f"take coordinates at rest, and obstacles that move{', or Located of order 2' if outside else ''}"
     )
 
 
@@ -48,11 +55,3 @@ def _can_be_seen_from_outside(scene: Scene) -> bool:
     if scene.n_j > 0 or (contacts is not None and contacts.friction is not None):
         return False
     return contacts is None or isinstance(contacts, LinearContacts)
-
-
-def _first(jolts: list[float], begin: float, end: float, period: float) -> float | None:
-    """The first of these times, or of their repetitions, within a span, not at its ends."""
-    rounding = ROUNDINGS * max(abs(begin), abs(end))
-    begin, end = begin + rounding, end - rounding
-    later = [x if isinf(period) else x + (1 + floor((begin - x) / period)) * period for x in jolts]
-    return min((x for x in later if begin < x < end), default=None)

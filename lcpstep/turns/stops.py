@@ -168,10 +168,9 @@ def corners_between(source: Source, found: Leaves) -> Array:
 
 def jump_at(source: Source, found: Leaves, ends: Array) -> Array:
     """The first of the ends where a speed jumps there, which no leaf shows: differences would look across it."""
-    start, beside = ends[:1], 2.0 * APART * max(ends[-1] - ends[0], abs(ends[0]))
     fastest = float(np.max(np.abs(source.values(found.a)[..., 1])))
-    jumps, _ = jump_times(source, start - beside, start + beside, LITTLE / JUMP * fastest)
-    return start[jumps]
+    jumps, _ = jumps_beside(source, ends[:1], (ends[0], ends[-1]), LITTLE / JUMP * fastest)
+    return ends[:1][jumps]
 
 
 def at_jumps(source: Source, corners: Array, span: tuple[float, float]) -> Array:
