@@ -3,7 +3,7 @@
 A function f(t, q, v, p, out), or f(t, x, p, out) of a system with modes, of scalars and entries of arrays, with
 `math`, numbers and such functions of its module, branches and loops over ranges is translated word for word; q, v, x
 and p are read within their bounds alone. Others stay Python, and are compiled when they are used
-(`lcpstep.callbacks`). The module that comes out has
+(`lcpstep.callbacks.compiling`). The module that comes out has
 
     FUNCTIONS = {(module, name): (code, constants, names, numbers, called, address)}
 

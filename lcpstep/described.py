@@ -34,8 +34,8 @@ from lagrangian.checks import ReadOnly
 from lagrangian.parameters import Values
 from lagrangian.pickling import Pickled
 from lagrangian.sparse import is_sparse
-from lcpstep import functions
 from lcpstep.audit.result import Audit, Found, Window
+from lcpstep.callbacks import functions
 from lcpstep.errorbar.bars import Bar, ErrorBar
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
 from lcpstep.kernels import states
 from lcpstep.model import model, tangent_model
-from lcpstep.stepping.sparse_equations import Equations
+from lcpstep.stepping.sparse.equations import Equations
 from lcpstep.trajectory import Kind, Trajectory
 
 Array = NDArray[np.float64]

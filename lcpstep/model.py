@@ -19,8 +19,7 @@ from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System
 from lagrangian.checks import Callback
 from lagrangian.friction import sway, swaying
 from lagrangian.system import Harmonic
-from lcpstep import callbacks
-from lcpstep.callbacks import NotCompiled
+from lcpstep.callbacks import NotCompiled, compiling
 from lcpstep.callbacks import UncompiledCallback as UncompiledCallback
 from lcpstep.kernels import model as kernels
 from lcpstep.kernels.coefficients import Coefficients
@@ -139,10 +138,10 @@ def c_functions(scene: Scene, **parts: dict[str, Any]) -> tuple[dict[str, dict[s
     """Addresses of C functions for the callbacks among the fields of each part; what must be kept as long."""
     called_back: list[CalledBack] = []
     made: dict[str, dict[str, int]] = {}
-    compiling = not callbacks.disabled()
+    in_machine_code = not compiling.disabled()
     for part, fields in parts.items():
         given = {name: f for name, f in fields.items() if callable(f)}
-        made[part] = _compile(scene, part, given) if compiling else {}
+        made[part] = _compile(scene, part, given) if in_machine_code else {}
         for name, f in given.items():
             if name not in made[part]:
                 called_back.append(CalledBack(f))
@@ -155,11 +154,11 @@ def _compile(scene: Scene, part: str, given: dict[str, Callback]) -> dict[str, i
     for name, f in given.items():
         ndim = 1 if name in ("force", "gap", "gap_t", "bias", "mu", "entries") else 2
         try:
-            addresses[name] = callbacks.address(f, ndim)
+            addresses[name] = compiling.address(f, ndim)
         except NotCompiled as why:
             said = TANGENT.get(name, name) if part == "friction" else {"entries": "jacobian"}.get(name, name)
             prefix = "" if part in ("system", "contacts") else f"{part}."
-            callbacks.warn(f"{prefix}{said} of scene {scene.name!r}", f, why)
+            compiling.warn(f"{prefix}{said} of scene {scene.name!r}", f, why)
     return addresses
 
 

@@ -16,19 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import checks
-from lcpstep.culprits import culprit
-from lcpstep.depth import mass
+from lcpstep.callbacks.culprits import culprit
+from lcpstep.callbacks.faults import cause
+from lcpstep.doubts.depth import mass
+from lcpstep.doubts.hindrance import hindrance
+from lcpstep.doubts.kinks import valley
+from lcpstep.doubts.standstill import Standstill
+from lcpstep.doubts.sticking import held
 from lcpstep.errors import SimulationError, SimulationInterrupted
-from lcpstep.faults import cause
-from lcpstep.hindrance import hindrance
 from lcpstep.kernels.looks import all_finite
 from lcpstep.kernels.status import BUFFER_FULL
-from lcpstep.kinks import valley
 from lcpstep.model import unrepeatable
 from lcpstep.pace import Pace, tell
 from lcpstep.recording import Kept, Recorder, States
-from lcpstep.standstill import Standstill
-from lcpstep.sticking import held
 from lcpstep.trajectory import Counts, Status, Trajectory
 
 Array = NDArray[np.float64]

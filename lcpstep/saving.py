@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 from lagrangian.scenes import SCENES
-from lcpstep import dataset, functions
+from lcpstep import dataset
+from lcpstep.callbacks import functions
 from lcpstep.described import COLUMNS, Builder, Describer
 from lcpstep.errors import DamagedFile, LcpStepError
 from lcpstep.files import file_path

@@ -10,24 +10,16 @@ from weakref import WeakSet
 
 import numpy as np
 
-from lagrangian import Contacts, HybridScene, Scene
+from lagrangian import HybridScene, Scene
 from lagrangian.relations import check_derivatives, is_large
-from lcpstep.depth import too_deep
+from lcpstep.callbacks.faults import fault, forget
+from lcpstep.callbacks.hearing import hearing
+from lcpstep.callbacks.prepared import prepared
+from lcpstep.doubts.finished import doubt, warn_of_fast_gaps
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
-from lcpstep.faults import fault, forget
-from lcpstep.hearing import hearing
-from lcpstep.hops import too_short
-from lcpstep.jolts import jolted
-from lcpstep.leaps import leapt
-from lcpstep.outrun import outrun
-from lcpstep.prepared import prepared
 from lcpstep.recording import Keep, Kept
 from lcpstep.refusals import refused
-from lcpstep.resolution import unresolved
-from lcpstep.shared_normals import slide_on_one
 from lcpstep.trajectory import Status
-from lcpstep.turned import turned
-from lcpstep.warned import warn
 
 if TYPE_CHECKING:
     from lcpstep.events.hybrid.trajectory import HybridTrajectory
@@ -152,7 +144,7 @@ def _run_modes(
         raise refused("modes-audit", scene)
     run: HybridTrajectory = method.run_hybrid(scene, kept, report)
     if fault() is not None:
-        from lcpstep.culprits import hybrid_culprit
+        from lcpstep.callbacks.culprits import hybrid_culprit
 
         raise _raised(run, hybrid_culprit(scene, run.mode[-1]))
     return run
@@ -170,7 +162,7 @@ def _run(scene: Scene, method: Method, kept: Kept, report: Callable[[float], Non
 def _unbroken(run: Trajectory) -> Trajectory:
     """The run; SimulationError where a callback has raised in it."""
     if fault() is not None:
-        from lcpstep.culprits import culprit
+        from lcpstep.callbacks.culprits import culprit
 
         raise _raised(run, culprit(run.scene, (), run.q, run.v))
     return run
@@ -196,22 +188,12 @@ def _looked_over(run: Trajectory) -> Trajectory:
     """The run with its doubt, if there is one; an interrupt leaves it as it is, and its message says so."""
     try:
         _compare_derivatives(run)
-        _warn_of_fast_gaps(run)
-        doubt = (
-            _of_obstacles(run)
-            or leapt(run)
-            or jolted(run)
-            or too_deep(run)
-            or unresolved(run)
-            or turned(run)
-            or outrun(run)
-            or too_short(run)
-            or slide_on_one(run)
-        )
+        warn_of_fast_gaps(run)
+        words = doubt(run)
     except KeyboardInterrupt:
         unseen = replace(run, message=f"{run.message}; interrupted before its states were looked over")
         raise SimulationInterrupted(lambda: unseen) from None
-    return replace(run, doubt=doubt, message=f"{run.message}, but {doubt}") if doubt else run
+    return replace(run, doubt=words, message=f"{run.message}, but {words}") if words else run
 
 
 def _can_tell_errors(scene: Any, method: Method) -> None:
@@ -255,29 +237,6 @@ def _compare_derivatives(run: Trajectory) -> None:
     finally:
         forget()  # callbacks may fail at states that the motion has not reached
     COMPARED.add(run.scene)
-
-
-def _of_obstacles(run: Trajectory) -> str:
-    """Which obstacle has left no room, or has no normal or no inside, in words; a flat one always has all three."""
-    if not isinstance(run.scene.contacts, Contacts):
-        return ""
-    from lcpstep.normals import no_normal
-    from lcpstep.room import no_room
-    from lcpstep.sides import passed_through
-
-    return no_room(run) or no_normal(run) or passed_through(run)
-
-
-def _warn_of_fast_gaps(run: Trajectory) -> None:
-    """A warning where a gap turns fast with the place, and the method looks for events at times."""
-    if getattr(run.method, "audit", True) or not isinstance(run.scene.contacts, Contacts):
-        return
-    from lcpstep.fast_gaps import fast_gap
-    from lcpstep.turns.stops import FastTurn
-
-    words = fast_gap(run)
-    if words:
-        warn(f"{run.scene.name!r}: {words}", FastTurn)
 
 
 def _raised(run: Any, message: str) -> SimulationError:

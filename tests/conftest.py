@@ -54,10 +54,10 @@ def pytest_collection_finish(session):
 @pytest.fixture
 def sparse_steps(monkeypatch):
     """Sparse scenes take sparse steps however small they are."""
-    from lcpstep.stepping import sparse, sparse_coupled
+    from lcpstep.stepping.sparse import coupled, steps
 
-    monkeypatch.setattr(sparse, "FEW", 0)
-    monkeypatch.setattr(sparse_coupled, "FEW", 0)
+    monkeypatch.setattr(steps, "FEW", 0)
+    monkeypatch.setattr(coupled, "FEW", 0)
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from lcpstep.callbacks import disabled
+from lcpstep.callbacks.compiling import disabled
 
 COMPILES = not disabled() and find_spec("numba") is not None  # else own callbacks run in plain Python
 compiled_only = pytest.mark.skipif(

@@ -7,7 +7,7 @@ import pytest
 
 from lagrangian import profiles, scenes
 from lagrangian.scenes import pendulum
-from lcpstep import built, callbacks
+from lcpstep.callbacks import built, compiling
 from lcpstep.kernels.function import Function
 from lcpstep.kernels.model import shapes
 from tests.marks import compiled_only
@@ -34,8 +34,8 @@ def test_what_is_built_gives_the_numbers_of_what_is_compiled_to_the_last_bit(nam
         address = built.address(f)
         if address == 0:
             continue
-        monkeypatch.setattr(callbacks.built, "address", lambda f: 0)
-        compiled = Function(callbacks.address(f, len(shape)), p, n, n, shape)
+        monkeypatch.setattr(compiling.built, "address", lambda f: 0)
+        compiled = Function(compiling.address(f, len(shape)), p, n, n, shape)
         monkeypatch.undo()
         times = rng.uniform(0.0, 3.0, 50)
         for _ in range(5):

@@ -220,13 +220,13 @@ def calls_two_deep(t, q, v, p, out):
 
 @compiled_only
 def test_what_could_not_be_compiled_is_tried_again_where_it_reads_or_calls_something_else(monkeypatch):
-    from lcpstep import callbacks
+    from lcpstep.callbacks import NotCompiled, compiling
 
     for name, other in (("looked_up", lambda: 4.0), ("PAIR", ((4.0,), 1))):
-        with pytest.raises(callbacks.NotCompiled):
-            callbacks.address(calls_two_deep, 1)
+        with pytest.raises(NotCompiled):
+            compiling.address(calls_two_deep, 1)
         monkeypatch.setitem(globals(), name, other)
-    assert callbacks.address(calls_two_deep, 1) != 0
+    assert compiling.address(calls_two_deep, 1) != 0
 
 
 PRINTING = """

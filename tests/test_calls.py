@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from lagrangian import LinearJoints, scenes
-from lcpstep import EventDriven, Located, Moreau, hearing, simulate
+from lcpstep import EventDriven, Located, Moreau, simulate
+from lcpstep.callbacks import hearing
 
 SHORT = (0.0, 2e-3)
 

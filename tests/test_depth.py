@@ -9,7 +9,7 @@ import pytest
 from benchmarks.judge.describe import Description
 from lagrangian import Contacts, Coulomb, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Located, Moreau, cli, simulate
-from lcpstep.depth import too_deep
+from lcpstep.doubts.depth import too_deep
 from lcpstep.trajectory import Status
 
 FALLING = LinearSystem(M=1.0, force=-9.81)

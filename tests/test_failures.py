@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, Coulomb, Joints, LinearContacts, LinearJoints, LinearSystem, Scene, System
-from lcpstep import EventDriven, Located, Moreau, SimulationError, callbacks, simulate
+from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
+from lcpstep.callbacks import compiling
 from lcpstep.trajectory import Status
 from tests.falling import FALLING, FLOOR, run
 
@@ -159,7 +160,7 @@ def test_a_jacobian_that_only_steers_is_named_too(method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_callback_that_raises_in_plain_python_does_not_lose_the_motion(method):
-    callbacks.TOLD.clear()  # that there is no numba is told but once
+    compiling.TOLD.clear()  # that there is no numba is told but once
     seen = []
 
     def breaks(t, q, v, p, out):

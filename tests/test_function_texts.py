@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from lagrangian import Scene, System
-from lcpstep import functions
 from lcpstep.analysis.bifurcation import bifurcation
+from lcpstep.callbacks import functions
 from lcpstep.described import checksum
 from lcpstep.errors import SweepStopped
 
@@ -126,7 +126,7 @@ def test_methods_are_told_by_the_attributes_of_their_object():
 
 
 def test_checksums_are_the_same_in_another_process():
-    code = "from lcpstep import functions; from tests import test_function_texts as m; "
+    code = "from lcpstep.callbacks import functions; from tests import test_function_texts as m; "
     code += "print(*map(functions.checksum, m.FORCES), m.checksum(m.scene_of(m.Pull(4.0))))"
     mine = [*map(functions.checksum, FORCES), checksum(scene_of(Pull(4.0)))]
     told = subprocess.run(

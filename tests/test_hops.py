@@ -8,7 +8,7 @@ import pytest
 from benchmarks.judge.describe import Description
 from lagrangian import LinearContacts, LinearSystem, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, simulate
-from lcpstep.hops import too_short
+from lcpstep.doubts.hops import too_short
 from lcpstep.trajectory import Status
 
 TOLD = "is struck in every second step"

@@ -8,7 +8,7 @@ import pytest
 
 from lagrangian import Contacts, Scene, scenes
 from lcpstep import Located, Moreau, simulate
-from lcpstep.depth import gaps, normal
+from lcpstep.doubts.depth import gaps, normal
 from lcpstep.kernels import looks
 from lcpstep.kernels.states import power
 from lcpstep.model import looked_at, model

@@ -11,7 +11,7 @@ import weakref
 import numpy as np
 import pytest
 
-from lcpstep import callbacks
+from lcpstep.callbacks import compiling
 from lcpstep.pointers import callback_at
 from tests.marks import compiled_only
 
@@ -56,7 +56,7 @@ def entries(folder):
 
 def from_disk(f, ndim=1):
     """Whether machine code of the function was found; it must be right."""
-    from lcpstep.machine_code import OnDisk
+    from lcpstep.callbacks.machine_code import OnDisk
 
     found, load = [], OnDisk.load_overload
 
@@ -64,10 +64,10 @@ def from_disk(f, ndim=1):
         found.append(load(self, *arguments))
         return found[-1]
 
-    callbacks.MADE.clear()
+    compiling.MADE.clear()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(OnDisk, "load_overload", watched)
-        compiled = callback_at(callbacks.address(f, ndim))
+        compiled = callback_at(compiling.address(f, ndim))
     q, out, expected = np.array([1.5]), np.zeros((1,) * ndim), np.zeros((1,) * ndim)
     compiled(0.5, q, q, np.zeros(0), out, np.array([1, 1, 0, 1, ndim - 1]))
     f(0.5, q, q, np.zeros(0), expected)
@@ -104,7 +104,7 @@ def test_machine_code_of_a_file_that_was_run_is_found_again_and_nothing_is_impor
 
 
 def test_other_types_and_other_tools_have_their_own(load, tmp_path, monkeypatch):
-    from lcpstep import machine_code
+    from lcpstep.callbacks import machine_code
 
     assert not from_disk(load().double)
     assert not from_disk(load().double, ndim=2)
@@ -135,7 +135,7 @@ def test_a_damaged_entry_is_said_and_made_again(load, tmp_path, caplog, damage):
 
 
 def test_no_flipped_bit_passes(load, tmp_path):
-    from lcpstep.machine_code import own_number, read
+    from lcpstep.callbacks.machine_code import own_number, read
 
     from_disk(load().double)
     (entry,) = entries(tmp_path)
@@ -157,7 +157,7 @@ def close(tmp_path):
 @pytest.fixture
 def silent(monkeypatch):
     """As if nothing had been said before in this process."""
-    from lcpstep import machine_code
+    from lcpstep.callbacks import machine_code
 
     monkeypatch.setattr(machine_code, "TOLD", [])
 

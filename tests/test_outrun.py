@@ -10,9 +10,9 @@ import pytest
 from benchmarks.judge.describe import Description
 from lagrangian import Contacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, SimulationError, simulate
+from lcpstep.doubts.outrun import outrun
 from lcpstep.kernels.outrun import steepest
 from lcpstep.model import looked_at
-from lcpstep.outrun import outrun
 from lcpstep.trajectory import Status
 from tests.uncompiled import both_ways
 

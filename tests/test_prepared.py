@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lagrangian import LinearContacts, Scene, System
-from lcpstep.faults import Fault, fault, forget, note
-from lcpstep.prepared import evaluate
+from lcpstep.callbacks.faults import Fault, fault, forget, note
+from lcpstep.callbacks.prepared import evaluate
 
 
 def mass(t, q, v, p, out):

@@ -7,7 +7,7 @@ import pytest
 
 from lagrangian import Contacts, Coulomb, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, simulate
-from lcpstep.room import closes_upon
+from lcpstep.doubts.room import closes_upon
 from lcpstep.trajectory import Status
 
 

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
-from lcpstep import EventDriven, LcpStepError, Located, Moreau, functions, load, simulate
+from lcpstep import EventDriven, LcpStepError, Located, Moreau, load, simulate
+from lcpstep.callbacks import functions
 from lcpstep.errors import DamagedFile, NotWritten
 from tests.processes import python
 

@@ -8,8 +8,8 @@ import pytest
 
 from lagrangian import Contacts, Coulomb, LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
-from lcpstep.kinks import valley
-from lcpstep.standstill import LEAST, STEPS, Standstill
+from lcpstep.doubts.kinks import valley
+from lcpstep.doubts.standstill import LEAST, STEPS, Standstill
 
 FALLS = LinearSystem(np.eye(2), force=[0.0, -9.81])
 

@@ -10,10 +10,10 @@ from benchmarks.judge.describe import Description
 from lagrangian import Contacts, Joints, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, simulate
 from lcpstep.cli.common import DONE, FAILED
+from lcpstep.doubts.turned import turned
 from lcpstep.kernels.turned import farthest_turn
 from lcpstep.model import joints_looked_at, looked_at
 from lcpstep.trajectory import Status
-from lcpstep.turned import turned
 from tests.commands import run as command
 from tests.uncompiled import both_ways
 

@@ -27,12 +27,12 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene
+from lcpstep.callbacks.faults import forget
 from lcpstep.errorbar.advancement import Advancement, treats
 from lcpstep.errorbar.bars import ErrorBar
 from lcpstep.errors import LcpStepError, SimulationError, SimulationInterrupted
 from lcpstep.events import EventDriven
 from lcpstep.events.driven import LEAST_TOLERANCE
-from lcpstep.faults import forget
 from lcpstep.recording import Kept
 from lcpstep.stepping.again import Again
 from lcpstep.stepping.located import Located, require_exact

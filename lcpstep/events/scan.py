@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.faults import cause, forget
+from lcpstep.callbacks.faults import cause, forget
 from lcpstep.kernels.function import Function
 from lcpstep.kernels.model import Model
 from lcpstep.turns import turns

@@ -1,7 +1,7 @@
 """Looks at a finished run that tell, in one pass, whether there is anything to say of it.
 
-`lies_inside` and `highest` hold wherever `lcpstep.room`, `lcpstep.depth` or `lcpstep.resolution` have something to
-say, at the very states that these look at. A run is kept at times t (n,) in states q, v (n, n_q), contiguous.
+`lies_inside` and `highest` hold wherever `room`, `depth` or `resolution` of `lcpstep.doubts` have something to say,
+at the very states that these look at. A run is kept at times t (n,) in states q, v (n, n_q), contiguous.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The kinetic energy that a step of a finished run may have by its start, forces and obstacles: `lcpstep.outrun`.
+"""The kinetic energy that a step of a finished run may have by its start, forces and obstacles: `doubts.outrun`.
 
 The steps are divided into so many parts, one after the other, and the one in which the velocities grow most is looked
 at of each.

@@ -1,4 +1,4 @@
-"""How far what is pressed turns within steps of a finished run; see `lcpstep.turned`.
+"""How far what is pressed turns within steps of a finished run; see `lcpstep.doubts.turned`.
 
 The steps are divided into so many parts, one after the other, and the fastest that fits is looked at of each.
 """

@@ -1,6 +1,6 @@
 """User's functions that stay in Python: C functions around them, of the one signature of `lcpstep.kernels.function`.
 
-An exception leaves `out` not-a-number and is noted (`lcpstep.faults`), as in machine code; the run that meets the
+An exception leaves `out` not-a-number and is noted (`callbacks.faults`), as in machine code; the run that meets the
 number raises it. The run is slower by these functions alone.
 """
 
@@ -13,9 +13,9 @@ import numpy as np
 
 from lagrangian.checks import said
 from lagrangian.plain import python
-from lcpstep.faults import LOCAL, Callback, Fault, interrupted, name_of, note
-from lcpstep.functions import require
-from lcpstep.hearing import between, expect
+from lcpstep.callbacks.faults import LOCAL, Callback, Fault, interrupted, name_of, note
+from lcpstep.callbacks.functions import require
+from lcpstep.callbacks.hearing import between, expect
 
 C_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_double, *[ctypes.c_void_p] * 4, ctypes.POINTER(ctypes.c_ssize_t))
 ITEM, ALL_ONES = 8, 0xFF  # bytes of a number; of a not-a-number

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Scene
+from lcpstep.callbacks.faults import cause
 from lcpstep.events import EventDriven
 from lcpstep.events.flight.oscillator import oscillator_of
 from lcpstep.events.flight.run import bounds, flight_of
-from lcpstep.faults import cause
 from lcpstep.kernels.tally import Tally
 from lcpstep.maps.flights import Runs, follow
 from lcpstep.maps.tangent import along_logs

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
-from lcpstep.faults import cause
+from lcpstep.callbacks.faults import cause
 from lcpstep.maps.answers import Answers
 from lcpstep.maps.lanes import Lanes, advance, note_touching
 from lcpstep.maps.task import INSIDE, Task

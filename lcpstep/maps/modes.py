@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian.hybrid import HybridScene
+from lcpstep.callbacks.faults import cause, forget
 from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.field import Machine
 from lcpstep.events.hybrid.machine import machine
 from lcpstep.events.hybrid.run import prepared
-from lcpstep.faults import cause, forget
 from lcpstep.kernels.status import BUFFER_FULL
 from lcpstep.kernels.uncompiled import CalledBack
 from lcpstep.maps.follow import Task

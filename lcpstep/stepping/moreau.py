@@ -15,7 +15,7 @@ from lcpstep.stepping.steps import check_steps
 
 if TYPE_CHECKING:
     from lcpstep.recording import Kept
-    from lcpstep.stepping.sparse import SparseRun
+    from lcpstep.stepping.sparse.steps import SparseRun
     from lcpstep.trajectory import Trajectory
 
 
@@ -96,24 +96,24 @@ class Moreau:
         Raises LcpStepError where it is too large for those.
         """
         from lcpstep.model import LARGEST_DENSE
-        from lcpstep.stepping import sparse, sparse_coupled
+        from lcpstep.stepping.sparse import coupled, steps
 
         unknown, beyond = "", self.beyond_contacts(scene)
         if self.tolerance is not None:
             unknown = "sparse-tolerance"
-        elif self.lcp not in sparse.SOLVERS:
+        elif self.lcp not in steps.SOLVERS:
             unknown = "sparse-solver"
         elif self.projected:
             unknown = "sparse-projected"
         elif beyond:
-            unknown = sparse_coupled.unknown(scene)
+            unknown = coupled.unknown(scene)
         if unknown and scene.n_q > LARGEST_DENSE:
             raise refused(unknown, scene)
-        most = sparse_coupled.FEW if beyond else sparse.FEW
+        most = coupled.FEW if beyond else steps.FEW
         few = self.lcp == "lemke" and max(scene.n_q, scene.n_c) <= most
         if unknown or few:
             return None
-        return sparse_coupled.CoupledRun if beyond else sparse.SparseRun
+        return coupled.CoupledRun if beyond else steps.SparseRun
 
 
 def is_sparse(scene: Scene) -> bool:

@@ -19,8 +19,8 @@ from lcpstep.kernels.model import Model
 from lcpstep.model import coefficients, models
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.stepping import interpolation
+from lcpstep.stepping.by_tolerance.moreau import Attempts
 from lcpstep.stepping.extent import is_stiff, own_places, places, ways
-from lcpstep.stepping.moreau_by_tolerance import Attempts
 from lcpstep.stepping.step_run import StepRun
 from lcpstep.stepping.steps import RESTING, implicit_mass, inverse, number, start_side
 from lcpstep.stepping.theta_method import theta_loop as loop

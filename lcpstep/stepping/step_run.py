@@ -1,5 +1,5 @@
 """What runs by steps share: steps of one size, and a last one where that does not divide the span; or steps that a
-control chooses by a tolerance (`step_control`).
+control chooses by a tolerance (`by_tolerance`).
 """
 
 from __future__ import annotations
@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from lagrangian import Scene
-from lcpstep.faults import cause
+from lcpstep.callbacks.faults import cause
 from lcpstep.kernels.status import DONE
 from lcpstep.pace import Pace
 from lcpstep.recording import Kept, Recorder, States
 from lcpstep.running import Run
-from lcpstep.stepping.adaptive import LOOK, WANTED
+from lcpstep.stepping.by_tolerance.sizes import LOOK, WANTED
 from lcpstep.stepping.steps import divided, unresolved
 
 
@@ -25,7 +25,7 @@ class StepRun(Run):
     loop       the kernel that takes the steps, with its plan
     impulse    since the last kept state
     t0, first  time of a step, and its number
-    control    a `step_control.Control`, of steps by a tolerance
+    control    a `by_tolerance.control.Control`, of steps by a tolerance
     """
 
     loop: Any

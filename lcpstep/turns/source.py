@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene
-from lcpstep import fingerprint
+from lcpstep.callbacks import fingerprint
 from lcpstep.intervals import Interval, Moving, NotEnclosed, enclose
 from lcpstep.intervals.callbacks import Enclosed, plain
 

@@ -92,11 +92,12 @@ def test_the_next_process_finds_the_machine_code_of_callbacks(tmp_path):
 import sympy
 from sympy.physics.mechanics import dynamicsymbols
 from lagrangian.symbolic import derive
-from lcpstep import Moreau, callbacks, simulate
+from lcpstep import Moreau, simulate
+from lcpstep.callbacks import compiling
 x = dynamicsymbols("x")
 fall = derive(x.diff() ** 2 / 2 - 1.625 * x, x)
 print(simulate(fall.scene([0.0], [0.0], (0.0, 1.0)), Moreau(0.5)).q[-1, 0])
-print(len(callbacks.MADE))
+print(len(compiling.MADE))
 """
     folder = {"NUMBA_CACHE_DIR": str(tmp_path)}
     first = python(program, **folder)

@@ -7,7 +7,7 @@ import pytest
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
-from lcpstep.stepping.adaptive import LOOK
+from lcpstep.stepping.by_tolerance.sizes import LOOK
 from tests.known import ball_height
 
 TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6)

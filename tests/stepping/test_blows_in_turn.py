@@ -7,7 +7,7 @@ from scipy import sparse
 from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
 from lcpstep import EventDriven, Moreau, Status, energy, simulate
 from lcpstep.lcp.saddle import Problem
-from lcpstep.stepping.sparse_equations import Equations, Step
+from lcpstep.stepping.sparse.equations import Equations, Step
 
 MASSES, RESTITUTION, SPEED, NEAR = np.array([0.3, 2.0, 1.0, 5.0]), np.array([0.8, 0.6, 0.7]), 1.5, 1e-8
 

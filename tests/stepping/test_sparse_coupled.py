@@ -9,7 +9,7 @@ from scipy import sparse
 
 from lagrangian import Coulomb, Harmonic, Joints, LinearContacts, LinearJoints, LinearSystem, Scene, scenes
 from lcpstep import Moreau, SimulationError, energy, simulate
-from lcpstep.stepping.sparse_coupled import CoupledRun
+from lcpstep.stepping.sparse.coupled import CoupledRun
 from lcpstep.trajectory import Status
 from tests.marks import slow
 

@@ -6,9 +6,9 @@ from scipy import sparse
 
 from lagrangian import scenes
 from lcpstep import Moreau, energy, simulate, solve_lcp
-from lcpstep.stepping.sparse_coulomb import Coupled, Problem
-from lcpstep.stepping.sparse_path import OPEN, STICK, Path
-from lcpstep.stepping.sparse_updates import Lines
+from lcpstep.stepping.sparse.coulomb import Coupled, Problem
+from lcpstep.stepping.sparse.path import OPEN, STICK, Path
+from lcpstep.stepping.sparse.updates import Lines
 
 
 def row_of_points(seed, n, mu=0.3):

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from lagrangian import scenes
-from lcpstep import Moreau, model, normals, room, sides, simulate
+from lcpstep import Moreau, model, simulate
+from lcpstep.doubts import normals, room, sides
 from lcpstep.kernels import looks, outrun, record, states, surplus, turned
 from lcpstep.stepping import moreau_run
 from tests.marks import slow

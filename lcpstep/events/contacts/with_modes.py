@@ -11,7 +11,7 @@ import numpy as np
 
 from lagrangian import HybridScene, Scene
 from lagrangian.mechanical import mechanics
-from lcpstep.culprits import hybrid_culprit
+from lcpstep.callbacks.culprits import hybrid_culprit
 from lcpstep.events.codes import INSIDE
 from lcpstep.events.contacts.run import ContactRun
 from lcpstep.events.contacts.switching import Watched

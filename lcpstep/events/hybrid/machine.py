@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 
 from lagrangian.hybrid import HybridScene, HybridSystem
 from lagrangian.modes import BOTH, Guard, Surface
-from lcpstep import callbacks
-from lcpstep.callbacks import NotCompiled
+from lcpstep.callbacks import NotCompiled, compiling
+from lcpstep.callbacks.faults import name_of
 from lcpstep.events.hybrid.field import Machine
 from lcpstep.events.hybrid.kinds import ARRIVE, DIFFERENCE, EXIT_ABOVE, EXIT_BELOW, NOT_SLIDING, PLAIN
-from lcpstep.faults import name_of
 from lcpstep.kernels.uncompiled import CalledBack
 from lcpstep.lengths import ASIDE, lengths
 
@@ -144,10 +143,10 @@ def _guard_rows(guard: Guard, index: dict[str, int]) -> list[tuple[Any, Any, flo
 
 def _c_function(scene: HybridScene, f: Any) -> tuple[int, CalledBack | None]:
     """Address of a C function: machine code, or what must be kept around what stays in Python."""
-    if not callbacks.disabled():
+    if not compiling.disabled():
         try:
-            return callbacks.first_order_address(f), None
+            return compiling.first_order_address(f), None
         except NotCompiled as why:
-            callbacks.warn(f"{name_of(f)} of scene {scene.name!r}", f, why)
+            compiling.warn(f"{name_of(f)} of scene {scene.name!r}", f, why)
     called_back = CalledBack(f, first_order=True)
     return called_back.address, called_back

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian.hybrid import HybridScene
-from lcpstep.culprits import hybrid_culprit
+from lcpstep.callbacks.culprits import hybrid_culprit
 from lcpstep.errors import LcpStepError
 from lcpstep.events.hybrid.field import Machine
 from lcpstep.events.hybrid.kinds import LEAD, LENGTH, ROW_MODE, SWITCH_LEAD, TIME

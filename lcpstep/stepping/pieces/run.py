@@ -15,10 +15,10 @@ from lcpstep.gaps import no_way_out
 from lcpstep.kernels.looks import all_finite
 from lcpstep.model import model
 from lcpstep.recording import SPARE, Kept, Recorder, States
-from lcpstep.stepping import adaptive
 from lcpstep.stepping.again import Again
+from lcpstep.stepping.by_tolerance import sizes
+from lcpstep.stepping.by_tolerance.located import Attempts
 from lcpstep.stepping.interpolation import Bent
-from lcpstep.stepping.located_by_tolerance import Attempts
 from lcpstep.stepping.pieces.carried import displaced
 from lcpstep.stepping.pieces.polynomial_steps import PolynomialSteps
 from lcpstep.stepping.pieces.prepare import MANY_EXACTLY, carried_where_possible, plan, start
@@ -58,7 +58,7 @@ class LocatedRun(StepRun):
         code = int(self.loop.begin(self.scene.t_span[0]))
         p, tolerance = self.plan, self.method.tolerance
         # Steps that make no error are of one size
-        if tolerance is not None and not (p.plain and p.steady and tolerance >= adaptive.ROUNDED):
+        if tolerance is not None and not (p.plain and p.steady and tolerance >= sizes.ROUNDED):
             self.plan, order = Plan(p.fields | {"many": MANY_EXACTLY}), int(self.method.order)
             span, h = self.scene.t_span, self.method.h
             self.controlled_by(

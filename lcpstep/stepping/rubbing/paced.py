@@ -1,7 +1,7 @@
 """Steps with friction chosen by a tolerance, as kernels: one step of h is compared with two of h/2.
 
 A step is taken where its error, relative to 1 + the size of the motion, is no more than its share h / span of the
-tolerance, as by `step_control`: errors of the whole motion are proportional to it, up to what the motion itself
+tolerance, as by `by_tolerance`: errors of the whole motion are proportional to it, up to what the motion itself
 magnifies. It ends at its first event, which is located on the motion taken; what comes after is compared anew. Gaps,
 sliding velocities and forces that may have come to zero unseen within the step count by how far half the step finds
 them from their polynomials. Source: E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I
@@ -22,11 +22,11 @@ from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, STEP_TOO_SMALL
 from lcpstep.kernels.vectors import copy, distance, largest
 from lcpstep.pointers import abs, after, inf, max, min
-from lcpstep.stepping.adaptive import LEAST_SHARE, NEAR, ROUNDED
+from lcpstep.stepping.by_tolerance.control import relative_error
+from lcpstep.stepping.by_tolerance.sizes import LEAST_SHARE, NEAR, ROUNDED
 from lcpstep.stepping.rubbing.found import curve, measure_base, note_arrival, note_middle
 from lcpstep.stepping.rubbing.let_go import is_motion
 from lcpstep.stepping.rubbing.strides import Strides, go_on_with, push_end_back
-from lcpstep.stepping.step_control import relative_error
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 2.0  # of the change of step
 STEEP = 1.585  # an error that falls by no more than this power of the step, a third at half of it, comes from a jump

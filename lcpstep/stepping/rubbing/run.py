@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from lagrangian import LinearContacts, LinearJoints, Scene
 from lcpstep.events.contacts.run import ContactRun, start
 from lcpstep.recording import States
-from lcpstep.stepping.adaptive import FIRST
 from lcpstep.stepping.again import Again
+from lcpstep.stepping.by_tolerance.sizes import FIRST
 from lcpstep.stepping.extent import sizes
 from lcpstep.stepping.rubbing.steps import RubbingSteps
 from lcpstep.stepping.steps import divided

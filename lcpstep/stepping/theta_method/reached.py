@@ -2,7 +2,7 @@
 
 Springs and dampers carry no impulses, though the mobilities of an implicit step, in which they are, connect nearly
 everything: it is asked of the rows that take part whether R_i M^-1 R_k^T is zero. Sparse steps ask for coordinates
-that rows share (`sparse_stiction.connected`).
+that rows share (`sparse.stiction.connected`).
 """
 
 from __future__ import annotations
