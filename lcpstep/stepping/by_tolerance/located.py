@@ -32,16 +32,16 @@ class Attempts(Parts):
 
     def attempt(self) -> int:
         """One step, then two halves of it, both up to the first event; the last code of the loop."""
-        self.from_time, self.to_time, self.h = self.base(), self.goal(), self.step_size(self.level)
+        h = self.step_size(self.level)
         start, end, until = self.into, self.ends(), inf
-        entire, agreed = end == self.h, False
+        entire, agreed = end == h, False
         for trial in range(TRIALS):
             before = self.w.jump
             self.compare(start, end, entire, until)
             if self.w.jump != before:  # a velocity jumps within the step, which ends there then
                 self.restore()
                 end, until = self.ends(), inf
-                entire = end == self.h
+                entire = end == h
                 continue
             agreed = self.two.code != STOPPED or self.two.time == until or self.two.time == 0.0
             if agreed:
@@ -52,7 +52,7 @@ class Attempts(Parts):
             if early and EARLY * (end - start) < until < 0.5 * (end - start):
                 end, entire, until = start + until, False, inf
         # Nothing of a step comes after the multiple that it ends at, or before what was kept, by rounding
-        stamp(self.record, self.row, self.event, self.to_time, self.to_time)
+        stamp(self.record, self.row, self.event, self.goal(), self.goal())
         for k in range(self.row if self.row > 0 else 1, self.record.row):
             self.record.t[k] = max(self.record.t[k], self.record.t[k - 1])
         self.full = self.two.code == BUFFER_FULL and self.event + self.row > 0

@@ -18,4 +18,4 @@ cdef class Parts(Control):
     cdef Doubles last_row, A_inverse, AG, WA
     cdef bint rough, means, alike, sized
     cdef Led one, half, two
-    cdef double from_time, to_time, h, elapsed, stuck
+    cdef double elapsed, stuck

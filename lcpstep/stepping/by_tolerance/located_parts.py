@@ -23,11 +23,9 @@ from lcpstep.stepping.pieces.codes import CLOSED, STOPPED, WHOLE
 from lcpstep.stepping.pieces.corners import find_corners
 from lcpstep.stepping.pieces.keep import keep_now
 from lcpstep.stepping.pieces.loop import Steps
-from lcpstep.stepping.pieces.smooth import invert
+from lcpstep.stepping.pieces.smooth import SMALL, invert
 from lcpstep.stepping.pieces.state import Work
 from lcpstep.stepping.pieces.switches import COLLAPSE
-
-MATRICES = ["A_inverse", "AG", "WA"]  # of a plan, that depend on h
 
 
 class Led:
@@ -59,12 +57,10 @@ def copy_state(to: Work, w: Work, n_numbers: int, n_marks: int, n_matrices: int)
     copy_indices(to.status, w.status, n_marks)
     copy(to.G, w.G, n_matrices)
     to.sigma, to.end, to.low, to.high = w.sigma, w.end, w.low, w.high
-    to.stalled, to.settled, to.ahead, to.blind, to.goal = w.stalled, w.settled, w.ahead, w.blind, w.goal
-    to.under_way, to.unchanged, to.touching, to.pausing = w.under_way, w.unchanged, w.touching, w.pausing
-    to.fresh = w.fresh
+    to.stalled, to.settled, to.ahead = w.stalled, w.settled, w.ahead
+    to.under_way, to.touching, to.fresh = w.under_way, w.touching, w.fresh
     to.events, to.closed_now, to.made_with = w.events, w.closed_now, w.made_with
-    to.steps, to.lcp_calls, to.force_evaluations = w.steps, w.lcp_calls, w.force_evaluations
-    to.events_left, to.cut, to.members, to.idle = w.events_left, w.cut, w.members, w.idle
+    to.steps, to.cut, to.members, to.idle = w.steps, w.cut, w.members, w.idle
 
 
 class Parts(Control):
@@ -78,7 +74,6 @@ class Parts(Control):
     means                   forces of closed contacts are means over a piece
     alike                   a piece moves as a longer one does
     sized                   matrices are those of whole steps
-    from_time, to_time, h   base of the step at hand, the multiple that it ends at, and its length
     elapsed                 time that the last part has taken
     stuck                   instant of events without end in the last attempt that had them
     one, half, two          a single piece; the first of two halves; both
@@ -101,17 +96,16 @@ class Parts(Control):
         self.last_row = doubles(self.own_row)
         self.n_numbers, self.n_marks = len(w.numbers), len(w.marks)
         self.n_matrices = 0 if plan.constant else len(w.matrices)
-        fields, places = plan.fields, OWN + 1 if plan.trapezoidal else 1
-        self.matrices = {name: np.zeros((places, *np.shape(fields[name]))) for name in MATRICES}
+        places = OWN + 1 if self.m.linear else 1
+        self.matrices = {name: np.zeros((places, *x.shape)) for name, x in make(h).items()}
         self.A_inverse, self.AG = doubles(self.matrices["A_inverse"]), doubles(self.matrices["AG"])
-        self.WA, self.own_made[:] = doubles(self.matrices["WA"]), not plan.trapezoidal
+        self.WA, self.own_made[:] = doubles(self.matrices["WA"]), not self.m.linear
         second = order == 2
-        self.rough, self.means = second and not plan.plain, second and plan.trapezoidal
-        self.alike = second and not plan.trapezoidal
-        self.sized = self.means and plan.stiff and not plan.small
+        self.rough, self.means = second and not plan.plain, second and self.m.linear
+        self.alike = second and not self.m.linear
+        self.sized = self.means and plan.stiff and w.n_q > SMALL
         self.one, self.half, self.two = Led(w.n_q, w.n_c), Led(w.n_q, w.n_c), Led(w.n_q, w.n_c)
-        self.from_time = self.to_time = self.h = self.elapsed = 0.0
-        self.stuck = -inf
+        self.elapsed, self.stuck = 0.0, -inf
         self.size_q, self.size_v = largest(self.w.q, 0.0, w.n_q), largest(self.w.v, 0.0, w.n_q)
         w.pausing = True
         for c in range(w.n_c):
@@ -122,7 +116,7 @@ class Parts(Control):
 
         `start`, `end`: since the base of the step, whose end this is where it is `entire`.
         """
-        last = self.to_time if entire else self.from_time + end
+        last = self.goal() if entire else self.base() + end
         even = entire and start == 0.0
         # It keeps no states: of thousands asked for ahead each would cost
         self.record.next_time = self.n_times
@@ -130,7 +124,7 @@ class Parts(Control):
         self.led(self.one, code)
         self.restore()
         middle = start + 0.5 * (end - start)
-        code = self.part(start, middle, self.from_time + middle, even, 0.0, 1)
+        code = self.part(start, middle, self.base() + middle, even, 0.0, 1)
         self.led(self.half, code)
         if code != DONE:
             self.led(self.two, code)
@@ -142,7 +136,7 @@ class Parts(Control):
     def ends(self) -> float:
         """Where the step ends that begins now, since its base: at the next multiple, or at a corner before it."""
         _low, corner = find_corners(self.plan, self.w, self.now())
-        return corner - self.from_time if corner < self.to_time - self.plan.margin else self.h
+        return corner - self.base() if corner < self.goal() - self.plan.margin else self.step_size(self.level)
 
     def part(self, start: float, end: float, last: float, even: bool, until: float, halved: int) -> int:
         """A part of a step, in a single piece up to a time if that is not 0; `even` where it is as long as a level's.
@@ -159,7 +153,7 @@ class Parts(Control):
         self.plan.h = end
         self.w.unchanged, self.w.blind, self.w.goal, self.w.off = False, until, last, 0.0
         self.carry_on(start, even and start == 0.0, COLLAPSE * end)
-        code = self.way.take(self.from_time, self.w.steps, self.w.steps + 1)
+        code = self.way.take(self.base(), self.w.steps, self.w.steps + 1)
         if code == DONE:  # a contact's flight is followed without counting times
             self.w.sigma = end
         self.elapsed = self.w.sigma - start
@@ -167,7 +161,7 @@ class Parts(Control):
 
     def place(self, level: int, made_for: float) -> None:
         """Matrices of a level."""
-        n, n_c, k = self.w.n_q, self.w.n_c, level if self.plan.trapezoidal else 0
+        n, n_c, k = self.w.n_q, self.w.n_c, level if self.m.linear else 0
         self.plan.made_for, self.plan.A_inverse = made_for, after(self.A_inverse, k * 2 * n * n)
         self.plan.AG, self.plan.WA = after(self.AG, k * 2 * n_c * n), after(self.WA, k * 2 * n_c * n_c)
 
@@ -227,7 +221,6 @@ class Parts(Control):
 
     def restore(self) -> None:
         """Go back to the start of the step; work that was done stays counted."""
-        self.saved.lcp_calls, self.saved.force_evaluations = self.w.lcp_calls, self.w.force_evaluations
         copy_state(self.w, self.saved, self.n_numbers, self.n_marks, self.n_matrices)
         if self.w.low < self.w.jump < self.w.high:  # a jump that has been found since then
             self.w.high = self.w.jump

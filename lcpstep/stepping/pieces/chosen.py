@@ -15,14 +15,14 @@ import cython
 
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import NOISE
-from lcpstep.pointers import Doubles, after, max
-from lcpstep.stepping.pieces.codes import INERTIA
+from lcpstep.pointers import max
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
 from lcpstep.stepping.pieces.refine import FORCES, NONE, solve_several
+from lcpstep.stepping.pieces.smooth import mobilities
 from lcpstep.stepping.pieces.state import Plan, Work
 
 
-def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:
+def solve_chosen(m: Model, plan: Plan, w: Work, place: int, n: int, guess: int) -> bool:
     """0 <= z, W z + b >= 0 on the chosen contacts; W = G A^-1 G^T with the A of `place`.
 
     w.z comes as a guess, of FORCES or IMPULSES; zeros: NONE. False where there is no answer; the chosen are then
@@ -31,14 +31,14 @@ def solve_chosen(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, 
     w.lcp_calls += 1
     w.members = n
     if n == 1:
-        c = w.chosen[0]
-        if W[c * w.n_c + c] > 0.0:
-            w.z[0] = max(0.0, -w.b[0] / W[c * w.n_c + c])
+        own = mobilities(plan, w, place)[w.chosen[0] * (w.n_c + 1)]
+        if own > 0.0:
+            w.z[0] = max(0.0, -w.b[0] / own)
             return True
-    if solve_together(m, plan, w, W, place, n, guess):
+    if solve_several(m, plan, w, place, n, guess):
         return True
     loosen(m, plan, w, n, guess == FORCES)
-    return solve_together(m, plan, w, W, place, n, NONE)
+    return solve_several(m, plan, w, place, n, NONE)
 
 
 def loosen(m: Model, plan: Plan, w: Work, n: int, forces: bool) -> None:
@@ -47,10 +47,3 @@ def loosen(m: Model, plan: Plan, w: Work, n: int, forces: bool) -> None:
         c = w.chosen[k]
         w.b[k] += NOISE * (acceleration_terms(m, w, c) if forces else speed_terms(plan, w, c))
         w.z[k] = 0.0
-
-
-def solve_together(m: Model, plan: Plan, w: Work, W: Doubles, place: int, n: int, guess: int) -> bool:
-    """`solve_chosen` of several contacts, by what W is made of."""
-    if place != INERTIA:
-        return solve_several(m, plan, w, W, after(plan.A_inverse, place * w.n_q * w.n_q), False, n, guess)
-    return solve_several(m, plan, w, W, w.M if m.mass.given else m.M_inverse, m.mass.given, n, guess)

@@ -20,12 +20,12 @@ from lcpstep.stepping.pieces.chosen import solve_chosen
 from lcpstep.stepping.pieces.codes import CLOSED, GROUND, INERTIA, LEFT, OPEN
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms, velocity_of
 from lcpstep.stepping.pieces.refine import FORCES, IMPULSES, factor_pressed, keep_closed
-from lcpstep.stepping.pieces.smooth import answer_forces
+from lcpstep.stepping.pieces.smooth import answer_forces, mobilities, responses
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import count_turn, release, release_time, stick
 
 
-def hold(m: Model, plan: Plan, w: Work, place: int, t: float) -> bool:
+def hold(m: Model, plan: Plan, w: Work, t: float) -> bool:
     """Forces of the contacts that rest from w.alpha, and the acceleration with them; who needs none opens.
 
     All that touch at rest are decided in one problem: to add them one by one could go on for ever.
@@ -37,10 +37,9 @@ def hold(m: Model, plan: Plan, w: Work, place: int, t: float) -> bool:
     if n_k == 0:
         return True
     clear(w.fall, w.n_c)
-    place = answered(plan, w, place)
-    W = after(plan.WA, place * w.n_c * w.n_c) if place != INERTIA else w.W
-    MG = after(plan.AG, place * w.n_c * w.n_q) if place != INERTIA else w.MG
-    if not solve_chosen(m, plan, w, W, place, n_k, FORCES):
+    place = answered(plan, w)
+    W, MG = mobilities(plan, w, place), responses(plan, w, place)
+    if not solve_chosen(m, plan, w, place, n_k, FORCES):
         return False
     for i in range(n):
         w.a_try[i] = abs(w.a_free[i])
@@ -78,17 +77,17 @@ def open_or_close(m: Model, plan: Plan, w: Work, W: Doubles, n_k: int, t: float)
         w.force_now[c] = force
 
 
-def answered(plan: Plan, w: Work, place: int) -> int:
+def answered(plan: Plan, w: Work) -> int:
     """Place of the matrices by which accelerations answer contact forces over a piece, at the normals at hand.
 
     They are those of the trapezoidal rule: a force changes the velocity that damping answers within the piece.
     """
-    if plan.constant:
-        return place
-    if not (plan.trapezoidal and plan.stiff):
+    if not (plan.constant or plan.stiff):
         return INERTIA
-    n, n_c, inverse = w.n_q, w.n_c, after(plan.A_inverse, place * w.n_q * w.n_q)
-    answer_forces(inverse, w.G, after(plan.AG, place * n_c * n), after(plan.WA, place * n_c * n_c), n, n_c)
+    place = w.made_with
+    if not plan.constant:
+        inverse = after(plan.A_inverse, place * w.n_q * w.n_q)
+        answer_forces(inverse, w.G, responses(plan, w, place), mobilities(plan, w, place), w.n_q, w.n_c)
     return place
 
 
@@ -164,7 +163,7 @@ def pulls(m: Model, plan: Plan, w: Work, c: int, t: float) -> bool:
 
 def force_rounding(m: Model, w: Work, c: int) -> float:
     """Rounding of the force of contact c, sum_d |W^-1|_cd |terms_d|: much of it where normals are nearly parallel."""
-    n_k, error = w.pivots[w.n_c], 0.0
+    n_k, error = w.n_held, 0.0
     for k in range(n_k):
         w.change[k] = 1.0 if w.held[k] == c else 0.0
     solve_factored(w.problem, w.n_c, n_k, w.change)
@@ -235,10 +234,9 @@ def land(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
             n_k += 1
     if n_k == 0:
         return True
-    place = answered(plan, w, w.made_with)
-    W = after(plan.WA, place * w.n_c * w.n_c) if place != INERTIA else w.W
-    MG = after(plan.AG, place * w.n_c * w.n_q) if place != INERTIA else w.MG
-    if not solve_chosen(m, plan, w, W, place, n_k, IMPULSES):
+    place = answered(plan, w)
+    W, MG = mobilities(plan, w, place), responses(plan, w, place)
+    if not solve_chosen(m, plan, w, place, n_k, IMPULSES):
         return False
     for k in range(n_k):
         c, p = w.chosen[k], w.z[k]
@@ -248,7 +246,7 @@ def land(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
         add(w.v, p, after(MG, c * w.n_q), w.n_q)
     for k in range(n_k):
         c = w.chosen[k]
-        if w.p[c] == 0.0 and tau > 0.0:
+        if w.p[c] == 0.0:
             u = velocity_of(w, c)
             if u > NOISE * speed_terms(plan, w, c):
                 lost = 2.0 * u / (tau * mobility(w, W, c, n_k))

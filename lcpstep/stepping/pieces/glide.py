@@ -76,7 +76,7 @@ def glide(m: Model, plan: Plan, w: Work, t0: float, first: int, last: int) -> No
             now = t0 + h * (k - first)
             if not contact or kept >= now:
                 w.q[0], w.v[0] = q, v
-                keep(w, now, 0.0)
+                keep(w, now, 0.0, w.q, w.v)
             elif m.carried:  # the obstacle has told where the frame is, at `now` up to a rounding of the time
                 keep_one(w.record, now, PUT_BACK, q - m.frame_now[0], v - m.frame_now[1], w.impulse)
             else:

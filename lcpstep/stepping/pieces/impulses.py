@@ -79,7 +79,7 @@ def answer(m: Model, plan: Plan, w: Work, first: int, t: float, drifted: bool) -
     collapsed = False
     for k in range(n_s):
         c = w.chosen[k]
-        w.z[k] = w.b[k] = w.p[c] = 0.0
+        w.z[k] = w.b[k] = 0.0
         w.plastic[c] = 0
         if w.status[c] == OPEN:
             if first != CORNER:
@@ -93,11 +93,11 @@ def answer(m: Model, plan: Plan, w: Work, first: int, t: float, drifted: bool) -
         elif drifted or first == CORNER:
             w.b[k] = w.velocity[c]
     together = choose_collapsing(plan, w, first, n_s) if collapsed else n_s
-    if together > n_s and solve_chosen(m, plan, w, w.W, INERTIA, together, NONE):
+    if together > n_s and solve_chosen(m, plan, w, INERTIA, together, NONE):
         n_s = together
     else:  # walls without clearance cannot all be met where their speeds differ by rounding
         clear(w.z, n_s)
-        if not solve_chosen(m, plan, w, w.W, INERTIA, n_s, NONE):
+        if not solve_chosen(m, plan, w, INERTIA, n_s, NONE):
             return -1
     if apply(plan, w, n_s) == 0.0:
         idle(w)
@@ -123,7 +123,7 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
         # Rounding must not add up over chattering: it strikes with the speed that it left with
         if w.fall[c] > 0.0 and w.velocity[c] < 0.0 and closing:
             w.velocity[c] = -w.fall[c]
-        w.before[c], w.p[c] = w.velocity[c], 0.0  # p marks: 1 where contact c strikes with the first
+        w.before[c], w.place[c] = w.velocity[c], 0  # 1: strikes with the first
     w.chosen[0] = first
     if w.n_c == 1:
         w.gap[first], w.grounded[first] = 0.0, GROUND
@@ -141,12 +141,12 @@ def choose_struck(m: Model, plan: Plan, w: Work, first: int, t: float) -> int:
             passed = min(crossing * abs(w.velocity[c]), CROSSED * plan.slack)
             # the slack knows nothing of the lengths within a curved gap, whose rounding may be more
             met = w.gap[c] <= plan.slack + missed + passed or not m.flat
-            if met and w.p[c] == 0.0 and c != first and w.status[c] == OPEN and w.velocity[c] < 0.0:
+            if met and w.place[c] == 0 and c != first and w.status[c] == OPEN and w.velocity[c] < 0.0:
                 near = w.gap[c] <= plan.slack + missed
                 pushed = touched and w.grounded[c] >= GROUND and w.last[c] < 0.0
                 alike = abs(w.velocity[c] - u) <= SAME_SPEED * abs(u)
                 if (near and (pushed or alike)) or tied(m, plan, w, w.chosen[k], c, missed + passed):
-                    w.chosen[n_s], w.p[c] = c, 1.0
+                    w.chosen[n_s], w.place[c] = c, 1
                     w.gap[c], w.grounded[c] = 0.0, GROUND
                     n_s += 1
         k += 1

@@ -28,12 +28,12 @@ def breaks(way: Steps, w: Work, t: float, length: float) -> bool:
     if w.closed_now == 0 and not way.told:
         return False
     i = farthest_off(way, w, t, length)
-    w.doubtful = not way.told
+    way.doubtful = not way.told
     if i < 0:
         return False
-    w.sudden.begin(length, w.begins[i], velocity(w, i))
+    w.sudden.begin(length, w.before[i], velocity(w, i))
     while w.sudden.seek(t):
-        measure_rows(way, w, t, w.sudden.x)
+        way.measure_at(t, w.sudden.x)
         w.sudden.take(velocity(w, i))
     coarse = hidden_by_rounding(way, w, t, i)
     place, margin = place_of(way.m, w, t, coarse), max(way.plan.margin, coarse)
@@ -51,7 +51,7 @@ def hidden_by_rounding(way: Steps, w: Work, t: float, i: int) -> float:
     """By how much rounding of places hides the time of the jump just found, if row i jumps by the place; else 0."""
     if way.m.flat:
         return 0.0
-    measure_rows(way, w, t, w.sudden.low)
+    way.measure_at(t, w.sudden.low)
     coarse = coarseness(w.q_try, w.v_try, w.n_q)
     add(w.q_try, 4.0 * coarse, w.v_try, w.n_q)
     gap_rates(way.m, within(w, t + w.sudden.low), w.q_try, w.v_try, w.G_try, w.gap_t_try)
@@ -79,13 +79,13 @@ def farthest_off(way: Steps, w: Work, t: float, length: float) -> int:
     """
     found, most, largest = -1, 1.0, 0.0
     if way.told:
-        measure_rows(way, w, t, 0.0)
+        way.measure_at(t, 0.0)
     for i in range(w.n_c):
-        w.begins[i] = velocity(w, i) if way.told else 0.0
-    measure_rows(way, w, t, length)
+        w.before[i] = velocity(w, i) if way.told else 0.0
+    way.measure_at(t, length)
     for i in range(w.n_c):
         if w.status[i] == CLOSED or way.told:
-            change = abs(velocity(w, i) - w.begins[i])
+            change = abs(velocity(w, i) - w.before[i])
             off = change / max(JUMP * size_of(way.plan, w, i), w.sudden.drift) if change > 0.0 else 0.0
             largest = max(largest, change)
             if off > most:
@@ -93,11 +93,6 @@ def farthest_off(way: Steps, w: Work, t: float, length: float) -> int:
     if found < 0:
         w.sudden.excuse(largest)
     return found
-
-
-def measure_rows(way: Steps, w: Work, t: float, tau: float) -> None:
-    """State, Jacobian and rates of contacts at tau after the base t of the piece at hand."""
-    way.measure_at(within(w, t + tau), tau)
 
 
 def velocity(w: Work, i: int) -> float:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import cython
 
+from lcpstep.kernels.acceleration import factor_mass
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, copy
-from lcpstep.pointers import max, min
-from lcpstep.stepping.pieces.smooth import look_along, refactor, settle_state
+from lcpstep.pointers import Doubles, max, min
+from lcpstep.stepping.pieces.smooth import look_along, settle_state
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
 
@@ -59,11 +60,11 @@ def keep_between(m: Model, plan: Plan, w: Work, base: float, tau: float, end: fl
     add(w.impulse, 1.0 - share, w.residual, n_c)
     if not plan.constant:  # `settle_state` has looked elsewhere
         gap_rates(m, within(w, base + tau), w.q, w.v, w.G, w.gap_t)
-        refactor(m, w, base + tau)
+        factor_mass(m, base + tau, w.q, w.v, w.M)
 
 
-def keep(w: Work, t: float, jump: float) -> None:
-    """Keep the current state; states at one time share a row. Jump: 1 where the velocity may have jumped here.
+def keep(w: Work, t: float, jump: float, q: Doubles, v: Doubles) -> None:
+    """Keep a state; states at one time share a row. Jump: 1 where the velocity may have jumped here.
 
     An event at the very end of a step may round to a time after it, which is that of the step's end then.
     """
@@ -71,10 +72,10 @@ def keep(w: Work, t: float, jump: float) -> None:
     if t == w.record.last_time():
         jump = max(jump, w.record.mode[w.record.row - 1])
     w.record.take_back(t, w.impulse)
-    w.record.keep(t, jump, w.q, w.v, w.impulse)
+    w.record.keep(t, jump, q, v, w.impulse)
 
 
 def keep_event(w: Work, t: float) -> None:
     """Keep the state after an event at time t, if these are kept."""
     if w.record.keeps_event(t):
-        keep(w, t, 1.0)
+        keep(w, t, 1.0, w.q, w.v)

@@ -2,7 +2,6 @@ cdef class Steps(Stepwise):
     cdef public Plan plan
     cdef readonly Model m
     cdef readonly Work w
-    cdef bint gliding, ends, watched, asking, told
+    cdef bint gliding, ends, told, doubtful
     cdef double tau
-    cdef public double stop
     cdef Py_ssize_t found, own

@@ -16,7 +16,7 @@ from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import BUFFER_FULL, DONE, LCP_FAILED, NOT_FINITE, TOO_MANY_EVENTS
 from lcpstep.kernels.vectors import clear, copy, finite, product, size_of_product
-from lcpstep.pointers import abs, inf, max
+from lcpstep.pointers import abs, max
 from lcpstep.stepping.pieces.carried import put_kept_back
 from lcpstep.stepping.pieces.codes import AGAIN, CLOSED, CORNER, GROUND, NOBODY, OPEN, STOPPED
 from lcpstep.stepping.pieces.corners import find_corners, go_beyond, obstacles_move
@@ -40,10 +40,8 @@ class Steps(Stepwise):
     found    whose event ends it, or NOBODY,
     ends     and whether it ends with the smooth interval
     gliding  whether one linear degree of freedom goes on in registers while nothing happens
-    watched  whether obstacles have a velocity of their own, which may jump (`jumps`), or rows by the place,
-    asking   and pieces are looked at for that whatever `next_forces` tells
     told     whether open contacts have nothing but what jumps in the velocities of `measure_at` either
-    stop     end of the span
+    doubtful whether such a velocity may jump within the smooth interval
     own      kept states that are in the coordinates of the scene
 
     Parameters
@@ -54,10 +52,8 @@ class Steps(Stepwise):
     def __init__(self, m: Model, plan: Plan, w: Work) -> None:
         super().__init__()
         self.m, self.plan, self.w = m, plan, w
-        self.gliding = self.ends = False
-        self.tau, self.found, self.stop, self.own = 0.0, NOBODY, inf, 0
-        self.watched = obstacles_move(m) or not m.flat
-        self.asking, self.told = self.watched, False
+        self.gliding = self.ends = self.doubtful = False
+        self.tau, self.found, self.own, self.told = 0.0, NOBODY, 0, False
 
     @cython.ccall
     def begin(self, t: float) -> int:
@@ -93,7 +89,7 @@ class Steps(Stepwise):
         if code != DONE:
             return code
         t_next = self.w.goal if self.w.pausing else t0 + self.plan.h * (self.w.steps + 1 - first)
-        return end_step(self.plan, self.w, t_next, self.stop)
+        return end_step(self.plan, self.w, t_next)
 
     def step(self, t: float) -> int:
         """The rest of the step that began at t: from w.sigma to its end."""
@@ -102,18 +98,16 @@ class Steps(Stepwise):
                 return BUFFER_FULL
             if self.w.record.event + self.w.idle > self.w.events_left:
                 return TOO_MANY_EVENTS
-            c, code = NOBODY, DONE
+            self.found, code = NOBODY, DONE
             if self.w.sigma >= self.w.end:
                 if self.w.end >= self.plan.h:
                     return DONE
                 code = self.begin_interval(t)
-                c = self.found
-            if c == NOBODY and code == DONE:
+            if self.found == NOBODY and code == DONE:
                 code = self.piece(t)
-                c = self.found if code == DONE else NOBODY
-            if c != NOBODY and code == DONE:
-                code = self.take_event(t, c)
-            if code == LCP_FAILED and not poses(self.w):
+            if self.found != NOBODY and code == DONE:
+                code = self.take_event(t)
+            if code == LCP_FAILED and not (is_finite(self.w) and finite(self.w.W, self.w.n_c * self.w.n_c)):
                 return NOT_FINITE
             if code != DONE and code != AGAIN:
                 return code
@@ -132,12 +126,12 @@ class Steps(Stepwise):
         code = self.follow(t)
         return STOPPED if code == DONE and self.w.blind > 0.0 else code
 
-    def take_event(self, t: float, c: int) -> int:
-        """The event of a contact or of a corner; STOPPED where steps by a tolerance want to look at it."""
-        pausing = self.w.pausing and c != CORNER
+    def take_event(self, t: float) -> int:
+        """The event that was found; STOPPED where steps by a tolerance want to look at it."""
+        pausing = self.w.pausing and self.found != CORNER
         if pausing:
             copy(self.w.v_struck, self.w.v, self.w.n_q)
-        code = self.strike(t, c)
+        code = self.strike(t)
         return STOPPED if pausing and code == DONE else code
 
     def begin_interval(self, t: float) -> int:
@@ -160,8 +154,9 @@ class Steps(Stepwise):
         self.end_interval(t)
         if self.w.fresh:
             self.w.fresh = False
-            if self.found == NOBODY:  # what rests takes part: there was no time for the forces to part them
-                self.found = closing_now(self.w) if self.w.closed_now > 0 else NOBODY
+            # What rests takes part: there was no time for the forces to part them
+            if self.found == NOBODY and self.w.closed_now > 0:
+                self.found = closing_now(self.w)
         return DONE
 
     def end_interval(self, t: float) -> None:
@@ -169,7 +164,7 @@ class Steps(Stepwise):
         self.w.end = self.plan.h
         if t + self.plan.h > self.w.high + self.w.margin:
             self.w.end = max(self.w.high - t, self.w.sigma)
-        self.w.doubtful = self.asking
+        self.doubtful = not self.told
         self.next_forces(t + self.w.end)
 
     def cut(self, t: float) -> int:
@@ -194,31 +189,31 @@ class Steps(Stepwise):
         """How far the piece goes that begins at w.sigma: `tau`, `found` and `ends`."""
         return NOT_FINITE
 
-    def measure_at(self, at: float, tau: float) -> None:
-        """State, Jacobian and rates of gaps at tau after the base, into w.q_try and others; `at` is that time."""
+    def measure_at(self, t: float, tau: float) -> None:
+        """State, Jacobian and rates of gaps at tau after the base, which is at t, into w.q_try and others."""
 
     def follow(self, t: float) -> int:
         """Go on by `tau`."""
         return NOT_FINITE
 
-    def strike(self, t: float, c: int) -> int:
-        """The event of contact c at w.sigma, or that of a corner, and what it changes."""
+    def strike(self, t: float) -> int:
+        """The event at w.sigma of the contact that was `found`, or of a corner, and what it changes."""
         return NOT_FINITE
 
 
-def end_step(plan: Plan, w: Work, t: float, stop: float) -> int:
+def end_step(plan: Plan, w: Work, t: float) -> int:
     """What is kept where a step ends, at time t; whether the run goes on.
 
     States asked for at rounding after it are the next step's, which an impact may begin; at the span's end none is.
     """
     late = t + LATE * plan.h + 4.0 * RESOLUTION * abs(t)
-    keep_now(w, late if late >= stop else t)
+    keep_now(w, late if late >= plan.clock.t_end else t)
     w.steps += 1
     w.under_way = False
     if not (is_finite(w) and finite(w.impulse, w.n_c)):
         return NOT_FINITE
     if w.record.is_due(w.steps):
-        keep(w, t, 0.0)
+        keep(w, t, 0.0, w.q, w.v)
     return DONE
 
 
@@ -246,17 +241,12 @@ def is_finite(w: Work) -> bool:
     return known and finite(w.gap, w.n_c) and finite(w.velocity, w.n_c) and finite(w.half, w.n_c)
 
 
-def poses(w: Work) -> bool:
-    """Whether the contact problem that has no solution is one of finite numbers."""
-    return is_finite(w) and finite(w.W, w.n_c * w.n_c)
-
-
 def begin_motion(m: Model, plan: Plan, w: Work, t: float) -> int:
     """Forces, gaps and status of the initial state, which is kept where states are."""
     w.low, w.high = find_corners(plan, w, t)
     w.margin = plan.margin
     w.fresh = True
-    if plan.trapezoidal:
+    if m.linear:
         external_force(m, within(w, t), w.q, w.v, w.force)
     elif not free_acceleration(m, w, within(w, t), w.q, w.v, w.a_free):
         return NOT_FINITE
@@ -267,10 +257,8 @@ def begin_motion(m: Model, plan: Plan, w: Work, t: float) -> int:
     measure(m, w, t)
     if plan.constant:
         respond(m, w)
-        for c in range(w.n_c):
-            w.alpha[c] = product(m.G, w.a_free, c, w.n_q)
     if not plan.plain:
-        gap_bias(m, w, within(w, t), w.q, w.v)
+        gap_bias(m, w, t, w.q, w.v)
     for c in range(w.n_c):
         if w.gap[c] <= plan.slack:
             w.gap[c], w.grounded[c] = 0.0, GROUND
@@ -282,6 +270,6 @@ def begin_motion(m: Model, plan: Plan, w: Work, t: float) -> int:
                 w.velocity[c], w.status[c] = 0.0, CLOSED
                 w.closed_now += 1
     if w.record.n_times == 0:
-        keep(w, t, 0.0)
+        keep(w, t, 0.0, w.q, w.v)
     keep_now(w, t)
     return DONE

@@ -41,8 +41,7 @@ BRIEF = 1.0 / 8.0  # of a piece: hops that last no longer obey the acceleration 
 def begin_piece(m: Model, plan: Plan, w: Work, t: float) -> bool:
     """Accelerations and gap quadratics of the piece that begins at t."""
     n_c = w.n_c
-    place = accelerate(m, plan, w)
-    w.made_with = place
+    accelerate(m, plan, w)
     if n_c == 0:
         copy(w.a, w.a_free, w.n_q)
         return True
@@ -53,17 +52,17 @@ def begin_piece(m: Model, plan: Plan, w: Work, t: float) -> bool:
     if m.flat:
         flat_accelerations(m, plan, w, t)
     elif needs_bias(plan, w):
-        gap_bias(m, w, within(w, t), w.q, w.v)
+        gap_bias(m, w, t, w.q, w.v)
         gap_accelerations(w, w.a_free)
     if closed and not plan.constant and not renew_mobility(m, plan, w, t):
         return False
-    if not hold(m, plan, w, place, t):
+    if not hold(m, plan, w, t):
         return False
     if plan.constant:
         for c in range(n_c):
             w.half[c] = 0.5 * (w.alpha[c] + w.bend[c])
         if closed:
-            pressed(plan, w, place)
+            pressed(plan, w)
     else:
         fitted(m, plan, w, t, w.end - w.sigma)
     for c in range(n_c):
@@ -81,9 +80,8 @@ def flat_accelerations(m: Model, plan: Plan, w: Work, t: float) -> None:
     soon over obeys the obstacle's acceleration at its beginning: by the mean it would land with another speed than it
     has begun with, always higher or always lower, thousands of times in a piece.
     """
-    if not plan.steady or moves(m):
-        for c in range(w.n_c):
-            w.alpha[c] = product(m.G, w.a_free, c, w.n_q)
+    for c in range(w.n_c):
+        w.alpha[c] = product(m.G, w.a_free, c, w.n_q)
     if moves(m):
         obstacle(m, within(w, t), w.q, w.v)
         for c in range(w.n_c):
@@ -98,9 +96,9 @@ def flat_accelerations(m: Model, plan: Plan, w: Work, t: float) -> None:
             w.bias[c] = -0.5 * (s + s_end)
 
 
-def pressed(plan: Plan, w: Work, place: int) -> None:
+def pressed(plan: Plan, w: Work) -> None:
     """Add to the gap quadratics what contact forces do."""
-    WA = after(plan.WA, place * w.n_c * w.n_c)
+    WA = after(plan.WA, w.made_with * w.n_c * w.n_c)
     for d in range(w.n_c):
         force = w.force_now[d]
         if w.status[d] == CLOSED and force > 0.0:
@@ -210,7 +208,7 @@ def between(m: Model, w: Work, c: int, t: float, low: float, high: float) -> flo
     w.bracket.begin(low, high, True, 0.5 * (low + high))
     while w.bracket.seek(RESOLUTION * w.bracket.b):
         look(m, w, t, w.bracket.x)
-        w.bracket.take(1.0 if w.gap_try[c] > 0.0 else -1.0, 0.0)  # the first zero, where rounding makes many
+        w.bracket.halve(w.gap_try[c] > 0.0)  # the first zero, where rounding makes many
     return w.bracket.b
 
 
@@ -227,17 +225,17 @@ def move(m: Model, plan: Plan, w: Work, t: float, tau: float, to_end: bool) -> i
     if tau > 0.0:
         if not advance(m, plan, w, within(w, now), tau):
             return NOT_FINITE
-        if not (plan.plain or plan.trapezoidal):
+        if not m.linear:
             taken = take_back(plan, w, now + tau)
         for c in range(w.n_c):
             w.grounded[c] = 0
     w.sigma = w.end if to_end else w.sigma + tau
-    if to_end and plan.trapezoidal and not plan.steady:
+    if to_end and m.linear and not plan.steady:
         copy(w.force, w.next_force, w.n_q)
     if tau > 0.0 and (w.closed_now > 0 or penetrates(plan, w)):
         if plan.plain:
             if to_end:
-                put_on_surface(m, plan, w, now + tau)
+                put_on_surface(m, plan, w, now + tau, w.q)
         else:
             if not renew_mobility(m, plan, w, now + tau):
                 return NOT_FINITE
@@ -245,7 +243,7 @@ def move(m: Model, plan: Plan, w: Work, t: float, tau: float, to_end: bool) -> i
                 return LCP_FAILED
             if taken or penetrates(plan, w):
                 copy(w.q_try, w.q, w.n_q)
-                put_on_surface(m, plan, w, now + tau)
+                put_on_surface(m, plan, w, now + tau, w.q)
                 w.off = distance(w.q, w.q_try, w.n_q)
             measure(m, w, now + tau)
     if wanted and not plan.plain:

@@ -41,7 +41,7 @@ class Polynomial:
     """A piece of motion q(tau) = sum_k T_k (tau / scale)^k, and work space for making it and finding its events.
 
     T : (DEGREE + 1, n_q)   of which those up to `degree` are not zero
-    scale
+    t, scale                base of the piece, and what times after it are divided by
     a : (5, n_q)            accelerations of the stages
     q, v                    state last asked for
     q_stage, v_stage, q_end, v_end
@@ -57,7 +57,7 @@ class Polynomial:
     def __init__(self, n_q: int, n_c: int) -> None:
         self.kept = np.zeros((DEGREE + 1 + 5 + 6) * n_q + (6 + PROBES) * n_c)
         x = doubles(self.kept)
-        self.scale, self.degree = 1.0, 1
+        self.t, self.scale, self.degree = 0.0, 1.0, 1
         self.T, self.a = x, after(x, (DEGREE + 1) * n_q)
         x = after(x, (DEGREE + 6) * n_q)
         self.q, self.v, self.q_stage = x, after(x, n_q), after(x, 2 * n_q)
@@ -82,23 +82,12 @@ def acceleration(m: Model, plan: Plan, w: Work, t: float, q: Doubles, v: Doubles
     return constrained(m, plan, w, t, q, v, out)
 
 
-def biases(m: Model, w: Work, t: float, q: Doubles, v: Doubles) -> None:
-    """Gap accelerations at v' = 0, into w.bias."""
-    inner = within(w, t)
-    if not m.flat:
-        gap_bias(m, w, inner, q, v)
-        return
-    obstacle(m, inner, q, v)
-    for c in range(w.n_c):
-        w.bias[c] = -m.motion_now[3 * c + 2] if m.motion.given else 0.0
-
-
 def constrained(m: Model, plan: Plan, w: Work, t: float, q: Doubles, v: Doubles, out: Doubles) -> bool:
     """Acceleration with the forces of closed contacts, which go to w.p; False where a matrix fails."""
     if not free_acceleration(m, w, within(w, t), q, v, out):
         return False
     gap_rates(m, t, q, v, w.G, w.gap_t)
-    biases(m, w, t, q, v)
+    gap_bias(m, w, t, q, v)
     if not plan.constant:
         respond(m, w)
     gap_accelerations(w, out)
@@ -116,7 +105,7 @@ def factor_closed(w: Work) -> None:
                 w.held[n_k] = c
                 if grow_factor(w.W, n_c, w.problem, n_c, w.held, w.doubt, n_k):
                     n_k += 1
-    w.pivots[n_c] = n_k
+    w.n_held = n_k
 
 
 def press(w: Work, out: Doubles, share: float) -> None:
@@ -125,7 +114,7 @@ def press(w: Work, out: Doubles, share: float) -> None:
     Where the factor is in doubt, as beside very unlike masses, what the acceleration leaves of `share` of the
     obstacles' own w.bias is taken out of both.
     """
-    n_c, n_k, doubt = w.n_c, w.pivots[w.n_c], 0.0
+    n_c, n_k, doubt = w.n_c, w.n_held, 0.0
     clear(w.p, n_c)
     for k in range(n_k):
         doubt = max(doubt, w.doubt[k])
@@ -151,6 +140,7 @@ def add_forces(w: Work, out: Doubles, n_k: int) -> None:
 
 def expand(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, length: float) -> bool:
     """The polynomial of the piece that begins at t."""
+    z.t = t
     if plan.exact:
         return taylor(m, plan, w, z, t)
     return hermite(m, plan, w, z, t, length)
@@ -238,11 +228,11 @@ def hermite(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, L: float) ->
     return good
 
 
-def state_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float) -> None:
-    """State at tau after the base t of the piece, into z.q and z.v."""
+def state_at(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float) -> None:
+    """State at tau after the base of the piece, into z.q and z.v."""
     n = w.n_q
     if on_surface(plan, w):
-        surface_state(m, w, z, t + tau)
+        surface_state(m, w, z, z.t + tau)
         return
     s = tau / z.scale
     for i in range(n):
@@ -252,7 +242,7 @@ def state_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float)
             q = q * s + z.T[k * n + i]
         z.q[i], z.v[i] = q, v / z.scale
     if plan.exact and m.frame.given:
-        m.frame.fill(t + tau, w.q, w.v, m.frame_now)
+        m.frame.fill(z.t + tau, w.q, w.v, m.frame_now)
         for i in range(n):
             z.q[i] -= m.frame_now[3 * i]
             z.v[i] -= m.frame_now[3 * i + 1]
@@ -270,16 +260,14 @@ def surface_state(m: Model, w: Work, z: Polynomial, t: float) -> None:
             z.v[0] = m.motion_now[3 * c + 1] / m.G[c]
 
 
-def contacts_at(
-    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, g: Doubles, u: Doubles
-) -> None:
+def contacts_at(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float, g: Doubles, u: Doubles) -> None:
     """Gaps and gap velocities at tau after the base of the piece."""
-    state_at(m, plan, w, z, t, tau)
-    gaps(m, t + tau, z.q, z.v, g)
-    gap_velocities(m, t + tau, z.q, z.v, w.G_try, w.gap_t_try, u)
+    state_at(m, plan, w, z, tau)
+    gaps(m, z.t + tau, z.q, z.v, g)
+    gap_velocities(m, z.t + tau, z.q, z.v, w.G_try, w.gap_t_try, u)
 
 
-def force_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float) -> bool:
+def force_at(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float) -> bool:
     """Forces of the closed contacts at tau after the base of the piece, into w.p."""
-    state_at(m, plan, w, z, t, tau)
-    return acceleration(m, plan, w, t + tau, z.q, z.v, w.v_try)
+    state_at(m, plan, w, z, tau)
+    return acceleration(m, plan, w, z.t + tau, z.q, z.v, w.v_try)

@@ -13,12 +13,12 @@ from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import product
 from lcpstep.pointers import Doubles
-from lcpstep.stepping.pieces.codes import CLOSED, GROUND, LEFT, OPEN, WHOLE
+from lcpstep.stepping.pieces.codes import CLOSED, GROUND, LEFT, OPEN
 from lcpstep.stepping.pieces.contact_forces import hold
 from lcpstep.stepping.pieces.keep import keep_event
-from lcpstep.stepping.pieces.polynomial import Polynomial, acceleration, biases
+from lcpstep.stepping.pieces.polynomial import Polynomial, acceleration
 from lcpstep.stepping.pieces.scan import SOON
-from lcpstep.stepping.pieces.smooth import free_acceleration, gap_accelerations, respond
+from lcpstep.stepping.pieces.smooth import free_acceleration, gap_accelerations, gap_bias, respond
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
 
@@ -30,10 +30,8 @@ def load(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, length: float) 
     n_c = w.n_c
     if n_c == 0:
         return True
-    undecided = w.ahead == UNDECIDED
-    w.ahead = 0.0
-    if undecided:
-        w.ahead = SOON * length
+    w.ahead = SOON * length if w.ahead == UNDECIDED else 0.0
+    if w.ahead > 0.0:
         return look_ahead(m, plan, w, z, t, w.ahead)
     if not free_acceleration(m, w, within(w, t), w.q, w.v, w.a_free):
         return False
@@ -77,11 +75,11 @@ def decide(m: Model, plan: Plan, w: Work, at: float, q: Doubles, v: Doubles, t: 
     """Which contacts are closed from t on, by the accelerations at a state; these without contact are at hand."""
     n_c, before = w.n_c, w.record.event
     gap_rates(m, at, q, v, w.G, w.gap_t)
-    biases(m, w, at, q, v)
+    gap_bias(m, w, at, q, v)
     gap_accelerations(w, w.a_free)
     if (w.closed_now > 0 or w.touching) and not plan.constant:
         respond(m, w)
-    if not hold(m, plan, w, WHOLE, t):
+    if not hold(m, plan, w, t):
         return False
     for c in range(n_c):
         w.half[c] = 0.5 * (product(w.G, w.a, c, w.n_q) + w.bias[c]) if w.status[c] == OPEN else 0.0

@@ -1,3 +1,3 @@
 cdef class PolynomialSteps(Steps):
     cdef readonly Polynomial z
-    cdef bint opens
+    cdef bint watched, opens

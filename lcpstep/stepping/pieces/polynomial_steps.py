@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.kernels.dynamics import gap_rates
+from lcpstep.kernels.dynamics import gap_rates, moves
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import DONE, LCP_FAILED, NOT_FINITE
@@ -26,7 +26,6 @@ from lcpstep.stepping.pieces.polynomial import (
     WEIGHTS,
     Polynomial,
     acceleration,
-    biases,
     expand,
     force_at,
     on_surface,
@@ -35,6 +34,7 @@ from lcpstep.stepping.pieces.polynomial import (
 from lcpstep.stepping.pieces.polynomial_forces import UNDECIDED, load
 from lcpstep.stepping.pieces.scan import LOW, NOWHERE, first_landing, first_release, hop_at, is_low
 from lcpstep.stepping.pieces.smooth import (
+    gap_bias,
     measure,
     newton_step,
     put_on_surface,
@@ -51,13 +51,15 @@ SLOW = 1e-3  # of a step: a touch is no event twice within so short a time
 class PolynomialSteps(Steps):
     """Steps of order four, or of exact motion; parameters are those of `Steps`.
 
-    z      the polynomial of the piece at hand
-    opens  whether the contact that ends the piece loses its force there, and does not land
+    z        the polynomial of the piece at hand
+    watched  whether obstacles or rows by the place have velocities that may jump (`jumps`)
+    opens    whether the contact that ends the piece loses its force there, and does not land
     """
 
     def __init__(self, m: Model, plan: Plan, w: Work) -> None:
         super().__init__(m, plan, w)
         self.z, self.opens = Polynomial(m.n_q, m.n_c), False
+        self.watched = not plan.exact and (moves(m) or not m.flat)
 
     def begin_piece(self, t: float) -> int:
         """Accelerations, and which contacts are closed."""
@@ -75,14 +77,14 @@ class PolynomialSteps(Steps):
         self.found, self.opens, self.tau = NOBODY, False, length
         if not expand(self.m, self.plan, self.w, self.z, now, length):
             return NOT_FINITE
-        if self.watched and is_off(self.plan, self.w, self.z) and breaks(self, self.w, now, length):
+        if self.watched and is_off(self.w, self.z) and breaks(self, self.w, now, length):
             self.w.ahead = UNDECIDED if self.w.ahead > 0.0 else 0.0
             return self.cut(t)
         if self.w.blind > 0.0:
             self.tau = min(length, self.w.blind)
         else:
-            self.found, stop = first_release(self.m, self.plan, self.w, self.z, now, length)
-            landing, self.tau = first_landing(self.m, self.plan, self.w, self.z, now, stop)
+            self.found, stop = first_release(self.m, self.plan, self.w, self.z, length)
+            landing, self.tau = first_landing(self.m, self.plan, self.w, self.z, stop)
             if landing == NOWHERE:
                 return NOT_FINITE
             if landing != NOBODY and at_corner(self.plan, self.w, now + self.tau):
@@ -94,29 +96,30 @@ class PolynomialSteps(Steps):
         self.ends = self.ends and self.w.sigma + length >= self.w.end * (1.0 - RESOLUTION)
         return DONE
 
-    def measure_at(self, at: float, tau: float) -> None:
+    def measure_at(self, t: float, tau: float) -> None:
         """State and gaps at tau after the base, on the polynomial."""
-        state_at(self.m, self.plan, self.w, self.z, at - tau, tau)
+        state_at(self.m, self.plan, self.w, self.z, tau)
         copy(self.w.q_try, self.z.q, self.w.n_q)
         copy(self.w.v_try, self.z.v, self.w.n_q)
+        at = within(self.w, t + tau)
         gap_rates(self.m, at, self.w.q_try, self.w.v_try, self.w.G_try, self.w.gap_t_try)
 
     def follow(self, t: float) -> int:
         """Go on along the polynomial."""
         return follow(self.m, self.plan, self.w, self.z, t, self.tau, self.ends)
 
-    def strike(self, t: float, c: int) -> int:
-        """Contact c opens, or lands, or a corner turns velocities."""
-        if c != CORNER and self.opens:
-            lose_force(self.m, self.plan, self.w, t + self.w.sigma, c)
+    def strike(self, t: float) -> int:
+        """A contact opens, or lands, or a corner turns velocities."""
+        if self.found != CORNER and self.opens:
+            lose_force(self.m, self.plan, self.w, t + self.w.sigma, self.found)
             return DONE
-        return land(self.m, self.plan, self.w, t + self.w.sigma, c)
+        return land(self.m, self.plan, self.w, t + self.w.sigma, self.found)
 
 
-def is_off(plan: Plan, w: Work, z: Polynomial) -> bool:
+def is_off(w: Work, z: Polynomial) -> bool:
     """Whether a closed contact has a velocity at the end of a Runge-Kutta step, of which Jacobian and rates are."""
     doubtful = False
-    for c in range(0 if plan.exact else w.n_c):
+    for c in range(w.n_c):
         if w.status[c] == CLOSED:
             u = product(w.G, z.v_stage, c, w.n_q) + w.gap_t[c]
             doubtful = doubtful or abs(u) > w.sudden.drift
@@ -139,7 +142,7 @@ def follow(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, e
     now = t + w.sigma
     end = now + tau - untold(now + tau, plan.h)  # to rounding: states there come after the impact
     while w.record.awaited() < end:
-        state_at(m, plan, w, z, now, max(0.0, w.record.awaited() - now))
+        state_at(m, plan, w, z, max(0.0, w.record.awaited() - now))
         settle_state(m, plan, w, w.record.awaited(), z.q)
         w.record.keep_awaited(z.q, z.v, w.impulse)
     w.sigma = w.end if ends else w.sigma + tau
@@ -147,23 +150,23 @@ def follow(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, e
         return DONE
     if w.closed_now > 0:
         for k in range(4):
-            if not force_at(m, plan, w, z, now, NODES[k] * tau):
+            if not force_at(m, plan, w, z, NODES[k] * tau):
                 return NOT_FINITE
             for c in range(w.n_c):
                 p = WEIGHTS[k] * tau * max(w.p[c], 0.0)  # else a zero's rounding
                 w.impulse[c] += p
                 w.pushed[c] += p
-    state_at(m, plan, w, z, now, tau)
+    state_at(m, plan, w, z, tau)
     copy(w.q, z.q, w.n_q)
     copy(w.v, z.v, w.n_q)
     for c in range(w.n_c):
         w.grounded[c] = 0
-        z.gap_to[c] = carried(m, plan, w, z, now, tau, c)
+        z.gap_to[c] = carried(m, plan, w, z, tau, c)
     measure(m, w, now + tau)
     if not on_surface(plan, w) and (w.closed_now > 0 or penetrates(plan, w)):
         if not renew_mobility(m, plan, w, now + tau):
             return NOT_FINITE
-        put_on_surface(m, plan, w, now + tau)
+        put_on_surface(m, plan, w, now + tau, w.q)
         w.off = distance(w.q, z.q, w.n_q)
         slide(m, w, within(w, now + tau))
         measure(m, w, now + tau)
@@ -173,14 +176,14 @@ def follow(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, e
     return DONE
 
 
-def carried(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> float:
-    """A low gap at tau after the base t of the piece, finer than positions tell; 0 where they tell enough.
+def carried(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float, c: int) -> float:
+    """A low gap at tau after the base of the piece, finer than positions tell; 0 where they tell enough.
 
     A landing that follows in another piece would be late by their rounding over its speed, which grows in chattering.
     """
     if w.status[c] == CLOSED or not is_low(plan, w, tau, c):
         return 0.0
-    mean, _ = hop_at(m, plan, w, z, t, tau, c)
+    mean, _ = hop_at(m, plan, w, z, tau, c)
     return tau * mean if tau * mean <= LOW * plan.slack else 0.0
 
 
@@ -203,7 +206,7 @@ def land(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     if not acceleration(m, plan, w, t, w.q, w.v, w.a):
         return NOT_FINITE
     gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
-    biases(m, w, t, w.q, w.v)
+    gap_bias(m, w, t, w.q, w.v)
     if not renew_mobility(m, plan, w, t):
         return NOT_FINITE
     for d in range(w.n_c):  # by which `is_over` judges the next hop

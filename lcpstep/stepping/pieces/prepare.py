@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from lcpstep.stepping.located import Located
 
 Array = NDArray[np.float64]
-SMALL = 8  # coordinates up to which matrices are made anew for the rest of a step
 # Impacts in one step after which the rest of a chattering sequence, if it ends within the step, is taken as one: the
 # frozen acceleration of order two makes no error by that
 MANY, MANY_EXACTLY = 200, 20_000
@@ -45,39 +44,39 @@ def carried_where_possible(m: Model, trapezoidal: bool) -> Model:
 
 def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     """Constants of steps of size h."""
-    n_q, n_c, G = m.n_q, m.n_c, m.arrays["G"]
-    trapezoidal = m.linear
-    stiff = is_stiff(m)
+    stiff, constant = is_stiff(m), m.linear and m.flat
     most = longest(scene, m, method)
-    constant = trapezoidal and m.flat
-    A_inverse, AG, WA = np.zeros((2, n_q, n_q)), np.zeros((2, n_c, n_q)), np.zeros((2, n_c, n_c))
-    own = implicit(m, stiff, method, h)
-    if trapezoidal:
-        A_inverse[:] = own
-    if constant:
-        AG[:] = (own @ G.T).T
-        WA[:] = G @ AG[0].T
     piece = min(method.h, most)
-    long = size(scene, m, method, piece, own if piece == h else implicit(m, stiff, method, piece))
+    long = size(scene, m, method, piece, implicit(m, method, piece))
     t_scale = max(abs(scene.t_span[0]), abs(scene.t_span[1]))
     if math.isfinite(scene.period):  # a callback may know the time no better than its phase
         t_scale = max(t_scale, scene.period)
     return Plan({
-        "h": h, "trapezoidal": trapezoidal, "stiff": trapezoidal and stiff,
-        "steady": trapezoidal and not stiff and not varies(m),
-        "plain": constant and not moves(m), "constant": constant, "small": n_q <= SMALL,
+        "h": h, "stiff": m.linear and stiff, "steady": m.linear and not stiff and not varies(m),
+        "plain": constant and not moves(m), "constant": constant,
         "slack": NOISE * long, "per_step": method.max_per_step,
         "many": MANY if method.order == 2 else MANY_EXACTLY,
         "exact": method.order == "exact", "longest": most,
         "clock": Clock(scene.t_span, turns(scene).stops, scene.period),
         "margin": MARGIN * t_scale,
-        "A_inverse": A_inverse, "AG": AG, "WA": WA,
-    })  # fmt: skip
+    } | matrices(m, method, h))  # fmt: skip
 
 
-def implicit(m: Model, stiff: bool, method: Located, h: float) -> Array:
+def matrices(m: Model, method: Located, h: float) -> dict[str, Array]:
+    """A_inverse, AG and WA of steps of size h, see `Plan`."""
+    n_q, n_c, G = m.n_q, m.n_c, m.arrays["G"]
+    A_inverse, AG, WA = np.zeros((2, n_q, n_q)), np.zeros((2, n_c, n_q)), np.zeros((2, n_c, n_c))
+    if m.linear:
+        A_inverse[:] = implicit(m, method, h)
+    if m.linear and m.flat:
+        AG[:] = (A_inverse[0] @ G.T).T
+        WA[:] = G @ AG[0].T
+    return {"A_inverse": A_inverse, "AG": AG, "WA": WA}
+
+
+def implicit(m: Model, method: Located, h: float) -> Array:
     """What steps of size h multiply forces with, (M + h/2 C + h^2/4 K)^-1; M^-1 where they are explicit."""
-    if not (stiff and method.order == 2):
+    if not (is_stiff(m) and method.order == 2):
         return m.arrays["M_inverse"]
     M, C, K = (m.arrays[name] for name in ("M", "C", "K"))
     return inverse(implicit_mass(M, C, K, 0.5 * h))
@@ -116,11 +115,11 @@ def largest_eigenvalue(A: Array) -> float:
 def start(scene: Scene, m: Model, p: Plan) -> Work:
     """State at the start of the scene's span, with the work space of a step."""
     w = Work(m.n_q, m.n_c)
-    w.start(scene.q0, scene.v0)
+    w.seen["q"][:], w.seen["v"][:] = scene.q0, scene.v0
     if m.carried:
         c, c_t = displaced(m, scene.t_span[0])
-        w.seen["q"][:] += c
-        w.seen["v"][:] += c_t
+        w.seen["q"] += c
+        w.seen["v"] += c_t
     if p.plain and m.n_q * m.n_c > 1:  # of one coordinate and contact they are the whole, as they stand
         for name, marks in ranges(m.arrays).items():
             w.seen[name][:] = marks

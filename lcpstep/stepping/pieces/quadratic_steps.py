@@ -30,16 +30,31 @@ class QuadraticSteps(Steps):
 
     def __init__(self, m: Model, plan: Plan, w: Work) -> None:
         super().__init__(m, plan, w)
-        self.told, self.asking = m.flat, not m.flat
-        self.gliding = plan.trapezoidal and m.flat and m.n_c <= 1 and m.n_q == 1
+        self.told = m.flat
+        self.gliding = plan.constant and m.n_c <= 1 and m.n_q == 1
 
     def pass_corner(self, t: float) -> bool:
         """Forces on the far side of a corner."""
         return renew_forces(self.m, self.plan, self.w, t)
 
     def next_forces(self, t: float) -> None:
-        """Forces, and accelerations of obstacles, at the end of a smooth interval."""
-        next_forces(self.m, self.plan, self.w, within(self.w, t))
+        """Forces, and what moves obstacles, at the end of a smooth interval.
+
+        Since the end of the one before, where this one begins, an obstacle's velocity may have jumped where it is
+        another than the accelerations make it.
+        """
+        near, length = within(self.w, t), self.w.end - self.w.sigma
+        if self.m.linear and not self.plan.steady:
+            external_force(self.m, near, self.w.q, self.w.v, self.w.next_force)
+            self.w.force_evaluations += 1
+        if self.m.flat and moves(self.m):
+            obstacle(self.m, near, self.w.q, self.w.v)
+            for c in range(self.w.n_c):
+                u, s = self.m.motion_now[c * 3 + 1], self.m.motion_now[c * 3 + 2]
+                change = 0.5 * length * (self.w.end_s[c] + s)
+                off = abs(u - self.w.end_u[c] - change)
+                self.doubtful = self.doubtful or off > self.w.sudden.drift
+                self.w.end_u[c], self.w.end_s[c] = u, s
 
     def begin_piece(self, t: float) -> int:
         """Accelerations and gap quadratics."""
@@ -49,7 +64,7 @@ class QuadraticSteps(Steps):
         """The first gap that closes; AGAIN after impacts of many bodies."""
         rest = self.w.end - self.w.sigma
         self.found, self.tau = NOBODY, rest
-        if self.w.doubtful and breaks(self, self.w, t + self.w.sigma, rest):
+        if self.doubtful and breaks(self, self.w, t + self.w.sigma, rest):
             return self.cut(t)
         if self.w.blind > 0.0:
             self.tau = min(rest, self.w.blind)
@@ -60,12 +75,13 @@ class QuadraticSteps(Steps):
         self.ends = self.found == NOBODY and self.tau == rest
         return DONE
 
-    def measure_at(self, at: float, tau: float) -> None:
+    def measure_at(self, t: float, tau: float) -> None:
         """State, Jacobian and rates of gaps at tau after the base, along the quadratics.
 
         Of flat contacts what obstacles alone make, beside accelerations that are linear over the piece.
         """
         look_along(self.w, tau)
+        at = within(self.w, t + tau)
         gap_rates(self.m, at, self.w.q_try, self.w.v_try, self.w.G_try, self.w.gap_t_try)
         for c in range(self.w.n_c if self.m.flat and moves(self.m) else 0):
             begins = -2.0 * self.w.bias[c] - self.w.end_s[c]
@@ -77,9 +93,9 @@ class QuadraticSteps(Steps):
         """Go on along the quadratics."""
         return move(self.m, self.plan, self.w, t, self.tau, self.ends)
 
-    def strike(self, t: float, c: int) -> int:
-        """The impact of contact c, or that of a corner."""
-        return event(self.m, self.plan, self.w, t, c)
+    def strike(self, t: float) -> int:
+        """The impact of a contact, or that of a corner."""
+        return event(self.m, self.plan, self.w, t, self.found)
 
 
 def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, float]:
@@ -106,11 +122,7 @@ def take_in_turn(m: Model, plan: Plan, w: Work, t: float) -> bool:
     """Impacts of many bodies, one after another, where these can be followed so; whether there were any."""
     if not (plan.plain and plan.steady and w.n_c > 1 and w.closed_now == 0):
         return False
-    done = race(m, plan, w, t, w.sigma, w.end, room(plan, w))
-    if done > 0:
-        w.sigma = w.q_time[0]
-        w.events += done
-    return done > 0
+    return race(m, plan, w, t, room(plan, w)) > 0
 
 
 def room(plan: Plan, w: Work) -> int:
@@ -121,21 +133,3 @@ def room(plan: Plan, w: Work) -> int:
     most = left if left < most else most
     left = w.record.row_capacity - w.record.row - 4
     return left if w.record.keeps_events() and left < most else most
-
-
-def next_forces(m: Model, plan: Plan, w: Work, t: float) -> None:
-    """Forces, and what moves obstacles, at the end t of a smooth interval.
-
-    Since the end of the one before, where this one begins, an obstacle's velocity may have jumped where it is another
-    than the accelerations make it.
-    """
-    if plan.trapezoidal and not plan.steady:
-        external_force(m, t, w.q, w.v, w.next_force)
-        w.force_evaluations += 1
-    if m.flat and moves(m):
-        obstacle(m, t, w.q, w.v)
-        for c in range(w.n_c):
-            u, s = m.motion_now[c * 3 + 1], m.motion_now[c * 3 + 2]
-            change = 0.5 * (w.end - w.sigma) * (w.end_s[c] + s)
-            w.doubtful = w.doubtful or abs(u - w.end_u[c] - change) > w.sudden.drift
-            w.end_u[c], w.end_s[c] = u, s

@@ -19,40 +19,44 @@ from lcpstep.kernels.roundings import NOISE
 from lcpstep.pointers import abs, inf, max
 from lcpstep.stepping.pieces.codes import GROUND
 from lcpstep.stepping.pieces.impulses import SMALL
+from lcpstep.stepping.pieces.keep import keep
 from lcpstep.stepping.pieces.sequences import SHORT
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import COLLAPSE
 from lcpstep.stepping.pieces.times import look_one, move_gap, move_one, untold
 
 
-def race(m: Model, plan: Plan, w: Work, t: float, sigma: float, end: float, most: int) -> int:
-    """Impacts in (sigma, end] of the step that began at t, at most so many; how many there were.
+def race(m: Model, plan: Plan, w: Work, t: float, most: int) -> int:
+    """Impacts in the rest of the smooth interval of the step that began at t, at most so many; how many there were.
 
-    All stand at the time of the last of them, w.q_time[0].
+    All stand at the time of the last of them, the new w.sigma.
     """
-    n_c, done, struck, now = w.n_c, 0, -1, sigma
+    n_c, done, struck, now = w.n_c, 0, -1, w.sigma
     for i in range(w.n_q):
-        w.q_time[i] = sigma
+        w.q_time[i] = w.sigma
     for c in range(n_c):
-        w.since[c] = sigma
-        w.next_zero[c] = next_zero(w, c, end)
+        w.since[c] = w.sigma
+        w.next_zero[c] = next_zero(w, c)
     while done < most:
         c = 0
         for d in range(1, n_c):
             if w.next_zero[d] < w.next_zero[c]:
                 c = d
         tau = w.next_zero[c]
-        if not tau <= end or not ordinary(m, plan, w, c, tau):
+        if not tau <= w.end or not ordinary(m, plan, w, c, tau):
             break
-        keep_times(plan, w, t, now, tau)
-        hit(m, w, c, tau, end)
+        keep_before(plan, w, t, now, tau)
+        hit(m, w, c, tau)
         w.record.note(t + tau, c, w.before[c], w.velocity[c], w.p[c], IMPACT)
         w.lcp_calls += 1
         done, struck, now = done + 1, c, tau
         if w.record.keeps_event(t + tau):
-            keep_impact(w, t, tau)
+            look_at(w, tau)
+            keep(w, t + tau, 1.0, w.q_try, w.v_try)
     if done > 0:
         bring_together(w, now, struck)
+        w.sigma = now
+        w.events += done
     return done
 
 
@@ -62,7 +66,7 @@ def look_at(w: Work, tau: float) -> None:
         look_one(w, i, tau - w.q_time[i])
 
 
-def keep_times(plan: Plan, w: Work, t: float, now: float, tau: float) -> None:
+def keep_before(plan: Plan, w: Work, t: float, now: float, tau: float) -> None:
     """Keep the states asked for from now on before the impact at tau; to rounding, those there come after it."""
     before = t + tau - untold(t + tau, plan.h)
     while w.record.awaited() < before:
@@ -70,17 +74,10 @@ def keep_times(plan: Plan, w: Work, t: float, now: float, tau: float) -> None:
         w.record.keep_awaited(w.q_try, w.v_try, w.impulse)
 
 
-def keep_impact(w: Work, t: float, tau: float) -> None:
-    """Keep the state at tau; states at one time share a row."""
-    look_at(w, tau)
-    w.record.take_back(t + tau, w.impulse)
-    w.record.keep(t + tau, 1.0, w.q_try, w.v_try, w.impulse)
-
-
-def next_zero(w: Work, c: int, end: float) -> float:
-    """When gap c closes, if that is before the end."""
+def next_zero(w: Work, c: int) -> float:
+    """When gap c closes, if that is before the end of the smooth interval."""
     g, u, half = w.gap[c], w.velocity[c], w.half[c]
-    if not may_reach_zero(g, u, half, end - w.since[c]):
+    if not may_reach_zero(g, u, half, w.end - w.since[c]):
         return inf
     return w.since[c] + first_zero(g, u, half)
 
@@ -107,7 +104,7 @@ def ordinary(m: Model, plan: Plan, w: Work, c: int, tau: float) -> bool:
     return True
 
 
-def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
+def hit(m: Model, w: Work, c: int, tau: float) -> None:
     """The impact of contact c at tau; position and velocity of its bodies agree with its gap to the last digit."""
     n, n_c, G, MG, W, r = w.n_q, w.n_c, w.G, w.MG, w.W, m.restitution[c]
     first, last, k = w.first_coordinate[c], w.last_coordinate[c] + 1, c * n
@@ -132,7 +129,7 @@ def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
     w.before[c], w.p[c] = u, p
     w.impulse[c] += p
     w.gap[c], w.velocity[c], w.fall[c] = 0.0, -r * u, -r * u
-    w.next_zero[c] = next_zero(w, c, end)
+    w.next_zero[c] = next_zero(w, c)
     for d in range(w.first_contact[c], w.last_contact[c] + 1):
         if d != c and W[d * n_c + c] != 0.0:
             s = tau - w.since[d]
@@ -142,14 +139,13 @@ def hit(m: Model, w: Work, c: int, tau: float, end: float) -> None:
             if abs(change) <= NOISE * abs(w.velocity[d]):
                 w.velocity[d] += change
             w.since[d], w.fall[d] = tau, 0.0
-            w.next_zero[d] = next_zero(w, d, end)
+            w.next_zero[d] = next_zero(w, d)
 
 
 def bring_together(w: Work, now: float, struck: int) -> None:
     """Bring all coordinates and gaps to one time."""
     for i in range(w.n_q):
         move_one(w, i, now - w.q_time[i])
-        w.q_time[i] = now
     for c in range(w.n_c):
         move_gap(w, c, now - w.since[c])
         w.grounded[c] = GROUND if c == struck else 0

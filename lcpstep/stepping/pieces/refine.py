@@ -24,10 +24,11 @@ from lcpstep.kernels.roundings import NOISE, RESOLUTION
 from lcpstep.kernels.vectors import clear, copy, largest, product
 from lcpstep.lcp.kernel import solve_small
 from lcpstep.lcp.status import SOLVED
-from lcpstep.pointers import Doubles, abs, max
+from lcpstep.pointers import Doubles, abs, after, max
+from lcpstep.stepping.pieces.codes import INERTIA
 from lcpstep.stepping.pieces.independent import bear_on_independent
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
-from lcpstep.stepping.pieces.smooth import push_held
+from lcpstep.stepping.pieces.smooth import mobilities, push_held
 from lcpstep.stepping.pieces.state import Plan, Work
 
 NONE, FORCES, IMPULSES = range(3)  # what a guess is of
@@ -48,27 +49,23 @@ def solve_unrefined(w: Work, W: Doubles, n: int) -> bool:
     return True
 
 
-def solve_several(
-    m: Model, plan: Plan, w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, guess: int
-) -> bool:
-    """The same for any number: the guess if it is still right, who was pressed, all, or the solver's answer; refined.
-
-    `inverse` is A^-1 or, if `factored`, Cholesky's factor of A.
-    """
-    if right(w, inverse, factored, n):
+def solve_several(m: Model, plan: Plan, w: Work, place: int, n: int, guess: int) -> bool:
+    """The same of several: the guess if it is still right, who was pressed, all, or the solver's answer; refined."""
+    W = mobilities(plan, w, place)
+    if n == 1:
+        return solve_unrefined(w, W, n)
+    if right(m, plan, w, place, n):
         return True
-    if n > 1 and guess != NONE:
+    if guess != NONE:
         n_k = still_pressed(m, plan, w, W, n, guess)
         if n_k > 0:
-            return refine(w, W, inverse, factored, n, n_k, True)
-    if n > 1 and all_pressed(w, W, n):
-        return refine(w, W, inverse, factored, n, n, True)
+            return refine(m, plan, w, place, n, n_k, True)
+    if all_pressed(w, W, n):
+        return refine(m, plan, w, place, n, n, True)
     solved = solve_unrefined(w, W, n)
-    if n == 1:
-        return solved
     if not solved:
         clear(w.z, n)
-    return refine(w, W, inverse, factored, n, -1, solved)
+    return refine(m, plan, w, place, n, -1, solved)
 
 
 def all_pressed(w: Work, W: Doubles, n: int) -> bool:
@@ -121,18 +118,16 @@ def closes(m: Model, plan: Plan, w: Work, W: Doubles, k: int, n_k: int, guess: i
     return -u > NOISE * size
 
 
-def right(w: Work, inverse: Doubles, factored: bool, n: int) -> bool:
+def right(m: Model, plan: Plan, w: Work, place: int, n: int) -> bool:
     """Whether the guess, positive for all, is the answer: what rests keeps its forces from step to step."""
-    if n == 1:
-        return False
     for k in range(n):
         if not w.z[k] > 0.0:
             return False
-    leftover(w, inverse, factored, n)
+    leftover(m, plan, w, place, n)
     return largest(w.residual, 0.0, n) <= EXACT * largest(w.b, 0.0, n)
 
 
-def leftover(w: Work, inverse: Doubles, factored: bool, n: int) -> None:
+def leftover(m: Model, plan: Plan, w: Work, place: int, n: int) -> None:
     """b + G A^-1 (G^T z) of the chosen contacts, into w.residual; A^-1 G^T z into w.jolt."""
     force, jolt, n_q = w.a_try, w.jolt, w.n_q
     clear(force, n_q)
@@ -141,10 +136,11 @@ def leftover(w: Work, inverse: Doubles, factored: bool, n: int) -> None:
             c = w.chosen[k]
             for i in range(w.first_coordinate[c], w.last_coordinate[c] + 1):
                 force[i] += w.G[c * w.n_q + i] * w.z[k]
-    if factored:
+    if place == INERTIA and m.mass.given:
         copy(jolt, force, n_q)
-        solve_definite(inverse, jolt, n_q)
+        solve_definite(w.M, jolt, n_q)
     else:
+        inverse = m.M_inverse if place == INERTIA else after(plan.A_inverse, place * n_q * n_q)
         clear(jolt, n_q)
         for j in range(n_q):
             if force[j] != 0.0:
@@ -169,10 +165,10 @@ def factor_pressed(w: Work, W: Doubles, n: int, everybody: bool) -> int:
     return n_k
 
 
-def refine(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, n_k: int, solved: bool) -> bool:
+def refine(m: Model, plan: Plan, w: Work, place: int, n: int, n_k: int, solved: bool) -> bool:
     """Correct z by what it leaves; False where that is no answer either. n_k: rows of the factor; < 0: none yet."""
-    size = largest(w.b, 0.0, n)
-    leftover(w, inverse, factored, n)
+    W, size = mobilities(plan, w, place), largest(w.b, 0.0, n)
+    leftover(m, plan, w, place, n)
     for _ in range(REFINEMENTS):
         worst = 0.0
         for k in range(n):
@@ -183,15 +179,15 @@ def refine(w: Work, W: Doubles, inverse: Doubles, factored: bool, n: int, n_k: i
         if n_k < 0:
             n_k = factor_pressed(w, W, n, not solved)
         most, change = correct(w, n, n_k)
-        leftover(w, inverse, factored, n)
+        leftover(m, plan, w, place, n)
         if change <= SETTLED * most:
             break
     answered = solved or presses(w, W, n)
     if not answered and 0 < n_k < n:
         squeeze(w, W, n, n_k)
-        leftover(w, inverse, factored, n)
+        leftover(m, plan, w, place, n)
         correct(w, n, n_k)
-        leftover(w, inverse, factored, n)
+        leftover(m, plan, w, place, n)
         answered = presses(w, W, n)
     for k in range(n):
         w.z[k] = max(w.z[k], 0.0)

@@ -21,7 +21,7 @@ from lcpstep.stepping.by_tolerance.located import Attempts
 from lcpstep.stepping.interpolation import Bent
 from lcpstep.stepping.pieces.carried import displaced
 from lcpstep.stepping.pieces.polynomial_steps import PolynomialSteps
-from lcpstep.stepping.pieces.prepare import MANY_EXACTLY, carried_where_possible, plan, start
+from lcpstep.stepping.pieces.prepare import MANY_EXACTLY, carried_where_possible, matrices, plan, start
 from lcpstep.stepping.pieces.quadratic_steps import QuadraticSteps
 from lcpstep.stepping.pieces.state import Plan
 from lcpstep.stepping.step_run import StepRun
@@ -51,7 +51,6 @@ class LocatedRun(StepRun):
         kind = QuadraticSteps if method.order == 2 else PolynomialSteps
         self.work.record = recorder.record
         self.loop = kind(self.model, p, self.work)
-        self.loop.stop = scene.t_span[1]
 
     def begin(self) -> int:
         """The initial state; a code."""
@@ -59,10 +58,10 @@ class LocatedRun(StepRun):
         p, tolerance = self.plan, self.method.tolerance
         # Steps that make no error are of one size
         if tolerance is not None and not (p.plain and p.steady and tolerance >= sizes.ROUNDED):
-            self.plan, order = Plan(p.fields | {"many": MANY_EXACTLY}), int(self.method.order)
+            p.many, order = MANY_EXACTLY, int(self.method.order)
             span, h = self.scene.t_span, self.method.h
             self.controlled_by(
-                Attempts(self.loop, lambda h: self.plan_for(h).fields, span, h, tolerance, order)
+                Attempts(self.loop, lambda h: matrices(self.model, self.method, h), span, h, tolerance, order)
             )
         return code
 

@@ -32,19 +32,19 @@ LOW = 1e9  # times the slack: rounding of positions is much of gaps below it
 BRIEF = 1.0 / 32.0  # of the longest piece: the mean velocity of so short a time is exact to rounding
 
 
-def gap_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> tuple[float, float]:
+def gap_at(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float, c: int) -> tuple[float, float]:
     """One gap and its velocity."""
-    contacts_at(m, plan, w, z, t, tau, w.gap_try, z.velocity_now)
+    contacts_at(m, plan, w, z, tau, w.gap_try, z.velocity_now)
     return w.gap_try[c], z.velocity_now[c]
 
 
-def hop_at(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, c: int) -> tuple[float, float]:
+def hop_at(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float, c: int) -> tuple[float, float]:
     """A low gap at tau after the base of the piece, over tau, and its slope."""
     mean, base = 0.0, max(w.gap[c], 0.0) / tau
     for k in range(4):
-        _, u = gap_at(m, plan, w, z, t, NODES[k] * tau, c)
+        _, u = gap_at(m, plan, w, z, NODES[k] * tau, c)
         mean += WEIGHTS[k] * u
-    _, u = gap_at(m, plan, w, z, t, tau, c)
+    _, u = gap_at(m, plan, w, z, tau, c)
     return base + mean, (u - mean - base) / tau
 
 
@@ -63,9 +63,7 @@ def height_terms(m: Model, w: Work, z: Polynomial, c: int) -> float:
     return size + size_of_product(m.G, z.q, c, w.n_q)
 
 
-def landing(
-    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int, low: bool
-) -> float:
+def landing(m: Model, plan: Plan, w: Work, z: Polynomial, a: float, b: float, c: int, low: bool) -> float:
     """Where gap c, which may stay low, falls to zero in (a, b]: positive at a, or on its way up, and not at b."""
     guess = b
     if low and w.gap[c] <= 0.0 and w.half[c] < 0.0:
@@ -73,23 +71,23 @@ def landing(
     w.bracket.begin(a, b, True, guess)
     while w.bracket.seek(2.0 * RESOLUTION * w.bracket.x):
         if low:
-            f, slope = hop_at(m, plan, w, z, t, w.bracket.x, c)
+            f, slope = hop_at(m, plan, w, z, w.bracket.x, c)
         else:
-            f, slope = gap_at(m, plan, w, z, t, w.bracket.x, c)
+            f, slope = gap_at(m, plan, w, z, w.bracket.x, c)
         w.bracket.newton(f, slope)
     return w.bracket.x
 
 
-def lowest(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, c: int) -> float:
+def lowest(m: Model, plan: Plan, w: Work, z: Polynomial, a: float, b: float, c: int) -> float:
     """Where the velocity of gap c passes zero upwards in (a, b)."""
     w.bracket.span(a, z.velocity_from[c], b, z.velocity_to[c])
     while w.bracket.seek(4.0 * RESOLUTION * w.bracket.b):
-        _g, f = gap_at(m, plan, w, z, t, w.bracket.x, c)
+        _g, f = gap_at(m, plan, w, z, w.bracket.x, c)
         w.bracket.chord(f)
     return w.bracket.x
 
 
-def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float) -> tuple[int, float]:
+def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, end: float) -> tuple[int, float]:
     """Which gap closes first in (0, end], and when; NOBODY and the end if none does, NOWHERE if one is not finite."""
     n_c, found, first = w.n_c, closing_now(w), end
     if found != NOBODY or end == 0.0:
@@ -99,11 +97,11 @@ def first_landing(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
     a = 0.0
     for part in range(1, PARTS + 1):
         b = end * part / PARTS
-        contacts_at(m, plan, w, z, t, b, z.gap_to, z.velocity_to)
+        contacts_at(m, plan, w, z, b, z.gap_to, z.velocity_to)
         for c in range(n_c):
             if not isfinite(z.gap_to[c]):
                 return NOWHERE, b
-            tau = landing_within(m, plan, w, z, t, a, b, end, c) if w.status[c] == OPEN else inf
+            tau = landing_within(m, plan, w, z, a, b, end, c) if w.status[c] == OPEN else inf
             if tau < first or (found == NOBODY and tau < inf):
                 found, first = c, tau
         if found != NOBODY:
@@ -125,13 +123,13 @@ def closing_now(w: Work) -> int:
 
 
 def landing_within(
-    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, end: float, c: int
+    m: Model, plan: Plan, w: Work, z: Polynomial, a: float, b: float, end: float, c: int
 ) -> float:
     """When the open gap c falls to zero in the interval (a, b] of (0, end]; infinite if it does not."""
     hop = w.gap[c] <= 0.0 and z.gap_from[c] <= plan.slack
     fine = hop or is_low(plan, w, b, c)
     if fine and z.gap_to[c] <= plan.slack:  # finer than positions tell
-        mean, _ = hop_at(m, plan, w, z, t, b, c)
+        mean, _ = hop_at(m, plan, w, z, b, c)
         z.gap_to[c] = b * mean
         if hop and w.grounded[c] == LEFT and abs(mean) <= NOISE * speed_terms(plan, w, c):
             return inf  # what has been let go a moment ago
@@ -139,8 +137,8 @@ def landing_within(
     if z.gap_to[c] > 0.0:
         if hop or not (z.velocity_from[c] < 0.0 < z.velocity_to[c]):
             return inf
-        low = lowest(m, plan, w, z, t, a, b, c)
-        g, _ = gap_at(m, plan, w, z, t, low, c)
+        low = lowest(m, plan, w, z, a, b, c)
+        g, _ = gap_at(m, plan, w, z, low, c)
         if g > 0.0:
             return inf
         if g >= -RESOLUTION * height_terms(m, w, z, c):  # a touch
@@ -148,10 +146,10 @@ def landing_within(
     start = max(a, SOON * end) if w.grounded[c] == LEFT else a
     if hop and start == 0.0 and w.velocity[c] <= 0.0:
         return 0.0
-    return landing(m, plan, w, z, t, start, low, c, fine)
+    return landing(m, plan, w, z, start, low, c, fine)
 
 
-def first_release(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float) -> tuple[int, float]:
+def first_release(m: Model, plan: Plan, w: Work, z: Polynomial, end: float) -> tuple[int, float]:
     """Which closed contact loses its force first in (0, end], and when; NOBODY and the end if none does.
 
     It may do so for a moment between two probes; whether one has to be looked for tells the probe beyond them.
@@ -161,26 +159,24 @@ def first_release(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: f
     n_c, found, first = w.n_c, NOBODY, end
     copy(z.pressed, w.force_now, n_c)
     for probe in range(1, PROBES + 1):
-        force_at(m, plan, w, z, t, end * probe / PROBES)
+        force_at(m, plan, w, z, end * probe / PROBES)
         copy(after(z.pressed, probe * n_c), w.p, n_c)
-        found, first = brief_release(m, plan, w, z, t, end, probe - 1, probe)
+        found, first = brief_release(m, plan, w, z, end, probe - 1, probe)
         if found == NOBODY:
-            found, first = release_at(m, plan, w, z, t, end, probe)
+            found, first = release_at(m, plan, w, z, end, probe)
         if found != NOBODY:
             return found, first
-    return brief_release(m, plan, w, z, t, end, PROBES, PROBES)
+    return brief_release(m, plan, w, z, end, PROBES, PROBES)
 
 
-def release_at(
-    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float, probe: int
-) -> tuple[int, float]:
+def release_at(m: Model, plan: Plan, w: Work, z: Polynomial, end: float, probe: int) -> tuple[int, float]:
     """Which contact that pulls at a probe has lost its force first since the one before, and when."""
     n_c, found, first = w.n_c, NOBODY, end
     forces, a, b = after(z.pressed, probe * n_c), from_probe(w, end, probe), end * probe / PROBES
     copy(w.p, forces, n_c)
     for c in range(n_c):
-        if w.status[c] == CLOSED and forces[c] < 0.0 and pulls(m, plan, w, c, t):
-            tau = vanishing(m, plan, w, z, t, a, b, forces[c], c)
+        if w.status[c] == CLOSED and forces[c] < 0.0 and pulls(m, plan, w, c, z.t):
+            tau = vanishing(m, plan, w, z, a, b, forces[c], c)
             copy(w.p, forces, n_c)  # forces were asked for at other times
             if tau < first or found == NOBODY:
                 found, first = c, tau
@@ -188,7 +184,7 @@ def release_at(
 
 
 def brief_release(
-    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, end: float, probe: int, last: int
+    m: Model, plan: Plan, w: Work, z: Polynomial, end: float, probe: int, last: int
 ) -> tuple[int, float]:
     """The same of contacts that press at a probe and at the one before, and pull in between; `last` is known too."""
     n_c, found, first, h, before = w.n_c, NOBODY, end, 0.5 * end / PROBES, probe - 2 if probe > 1 else 0
@@ -202,31 +198,22 @@ def brief_release(
         ):  # rounding of what they balance
             continue
         x = (2 * probe - 1) * h
-        force_at(m, plan, w, z, t, x)
+        force_at(m, plan, w, z, x)
         z.turn.begin(x, h, left, w.p[c], right)
-        while not (w.p[c] < 0.0 and pulls(m, plan, w, c, t)) and z.turn.seek():
+        while not (w.p[c] < 0.0 and pulls(m, plan, w, c, z.t)) and z.turn.seek():
             x = z.turn.x
-            force_at(m, plan, w, z, t, x)
+            force_at(m, plan, w, z, x)
             z.turn.take(w.p[c])
-        if w.p[c] < 0.0 and pulls(m, plan, w, c, t):
+        if w.p[c] < 0.0 and pulls(m, plan, w, c, z.t):
             force = w.p[c]
-            tau = vanishing(m, plan, w, z, t, from_probe(w, end, probe), x, force, c)
-            if (tau < first or found == NOBODY) and rises(m, plan, w, z, t, tau, x, end, force, c):
+            tau = vanishing(m, plan, w, z, from_probe(w, end, probe), x, force, c)
+            if (tau < first or found == NOBODY) and rises(m, plan, w, z, tau, x, end, force, c):
                 found, first = c, tau
     return found, first
 
 
 def rises(
-    m: Model,
-    plan: Plan,
-    w: Work,
-    z: Polynomial,
-    t: float,
-    tau: float,
-    x: float,
-    end: float,
-    force: float,
-    c: int,
+    m: Model, plan: Plan, w: Work, z: Polynomial, tau: float, x: float, end: float, force: float, c: int
 ) -> bool:
     """Whether contact c, whose force vanishes at tau and pulls at x, is let go by more than rounding of its gap.
 
@@ -239,7 +226,7 @@ def rises(
         span *= WIDER
         if tau + span >= end or -0.125 * WIDER * w.W[c * w.n_c + c] * lowest * span * span > plan.slack:
             return True
-        force_at(m, plan, w, z, t, tau + span)
+        force_at(m, plan, w, z, tau + span)
         lowest = min(lowest, w.p[c])
     return False
 
@@ -249,15 +236,13 @@ def from_probe(w: Work, end: float, probe: int) -> float:
     return w.ahead if probe == 1 else end * (probe - 1) / PROBES
 
 
-def vanishing(
-    m: Model, plan: Plan, w: Work, z: Polynomial, t: float, a: float, b: float, f_b: float, c: int
-) -> float:
+def vanishing(m: Model, plan: Plan, w: Work, z: Polynomial, a: float, b: float, f_b: float, c: int) -> float:
     """Where the force of contact c, which is f_b at b, vanishes in (a, b]."""
-    force_at(m, plan, w, z, t, a)
+    force_at(m, plan, w, z, a)
     if w.p[c] <= 0.0:
         return a
     w.bracket.span(a, w.p[c], b, f_b)
-    while w.bracket.seek(4.0 * RESOLUTION * (t + w.bracket.b)):
-        force_at(m, plan, w, z, t, w.bracket.x)
+    while w.bracket.seek(4.0 * RESOLUTION * (z.t + w.bracket.b)):
+        force_at(m, plan, w, z, w.bracket.x)
         w.bracket.chord(w.p[c])
     return w.bracket.x

@@ -13,7 +13,6 @@ import cython
 
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import NOISE
-from lcpstep.kernels.vectors import clear
 from lcpstep.pointers import abs
 from lcpstep.stepping.pieces.codes import CLOSED, OPEN
 from lcpstep.stepping.pieces.magnitudes import faint, with_terms
@@ -51,15 +50,15 @@ def choose_connected(w: Work, n_s: int) -> int:
     """Add the closed contacts that a chain of closed contacts connects with the chosen ones."""
     n_c = w.n_c
     for c in range(n_c):
-        w.p[c] = 1.0 if w.status[c] == CLOSED else 0.0  # still to be looked at
+        w.place[c] = 1 if w.status[c] == CLOSED else 0  # still to be looked at
     for k in range(n_s):
-        w.p[w.chosen[k]] = 0.0
+        w.place[w.chosen[k]] = 0
     k = 0
     while k < n_s:
         for c in range(n_c):
-            if w.p[c] == 1.0 and w.W[w.chosen[k] * w.n_c + c] != 0.0:
+            if w.place[c] == 1 and w.W[w.chosen[k] * w.n_c + c] != 0.0:
                 w.chosen[n_s] = c
-                w.p[c] = 0.0
+                w.place[c] = 0
                 n_s += 1
         k += 1
     return n_s
@@ -72,14 +71,15 @@ def choose_collapsing(plan: Plan, w: Work, first: int, n_s: int) -> int:
     brought to rest now would keep the speed of its last rebound, and go for good where nothing presses it then.
     """
     n_c = w.n_c
-    clear(w.p, n_c)
+    for c in range(n_c):
+        w.place[c] = 0
     for k in range(n_s):
-        w.p[w.chosen[k]] = 1.0  # chosen already
+        w.place[w.chosen[k]] = 1  # chosen already
     known, u, W = n_s, w.velocity[first], w.W[first * n_c + first]
     for c in range(n_c):
         row = at_this_instant(plan, w, c) and w.close_hits[c] >= IN_A_ROW
         slow = w.velocity[c] * w.velocity[c] * W <= AS_SLOW * u * u * w.W[c * n_c + c]
-        if w.status[c] == OPEN and w.p[c] == 0.0 and row and slow:
+        if w.status[c] == OPEN and w.place[c] == 0 and row and slow:
             w.chosen[n_s] = c
             n_s += 1
     if w.closed_now > 0:
@@ -90,19 +90,13 @@ def choose_collapsing(plan: Plan, w: Work, first: int, n_s: int) -> int:
         w.plastic[c] = 1 if w.status[c] == OPEN else 0
         if w.status[c] == OPEN:
             w.b[k] = w.velocity[c]
-    for k in range(n_s):
-        w.p[w.chosen[k]] = 0.0
     return n_s
 
 
 def note_hit(plan: Plan, w: Work, c: int) -> None:
     """Count the impact of contact c in this step, and among those at hardly any distance of each other."""
-    since = w.sigma - w.last[c]
     w.hits[c] = w.hits[c] + 1 if w.last[c] >= 0.0 else 1
-    if since > COLLAPSE * plan.h or w.last[c] < 0.0:
-        w.close_hits[c] = 0
-    else:
-        w.close_hits[c] += 1
+    w.close_hits[c] = w.close_hits[c] + 1 if at_this_instant(plan, w, c) else 0
     w.last[c] = w.sigma
 
 

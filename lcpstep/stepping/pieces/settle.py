@@ -18,6 +18,7 @@ from math import pow
 import cython
 
 from lcpstep.events.codes import ACCUMULATION, IMPACT
+from lcpstep.kernels.acceleration import factor_mass
 from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.roundings import NOISE
@@ -35,7 +36,6 @@ from lcpstep.stepping.pieces.smooth import (
     gap_bias,
     measure,
     put_on_surface,
-    refactor,
     renew_forces,
     renew_mobility,
 )
@@ -72,7 +72,7 @@ def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:
     """The impulses of the stretch, into w.z; gap velocities at its end without them are left in w.b."""
     n_c = w.n_c
     gap_rates(m, within(w, t), w.q, w.v, w.G, w.gap_t)
-    gap_bias(m, w, within(w, t), w.q, w.v)
+    gap_bias(m, w, t, w.q, w.v)
     if not renew_mobility(m, plan, w, t):
         return False
     gap_accelerations(w, w.a_free)
@@ -81,7 +81,7 @@ def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:
             w.gap[c] = 0.0
         w.chosen[c], w.z[c], w.before[c] = c, 0.0, w.velocity[c]
         w.b[c] = w.gap[c] / span + w.velocity[c] + span * w.alpha[c]
-    return solve_chosen(m, plan, w, w.W, INERTIA, n_c, NONE)
+    return solve_chosen(m, plan, w, INERTIA, n_c, NONE)
 
 
 def matters(m: Model, w: Work, lasting: bool) -> bool:
@@ -122,9 +122,9 @@ def note(m: Model, plan: Plan, w: Work, start: float, end: float, span: float) -
 def begin_again(m: Model, plan: Plan, w: Work, t: float) -> int:
     """State, gaps and forces where the next piece begins; the states asked for in between."""
     if not plan.plain:
-        if not refactor(m, w, t):
+        if not factor_mass(m, t, w.q, w.v, w.M):
             return NOT_FINITE
-        put_on_surface(m, plan, w, t)
+        put_on_surface(m, plan, w, t, w.q)
         measure(m, w, t)
     while w.record.awaited() < t:
         left = t - w.record.awaited()

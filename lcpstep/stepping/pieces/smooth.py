@@ -21,10 +21,11 @@ from lcpstep.kernels.linear import grow_factor, invert_matrix, solve_factored, u
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import add, copy, filled, product, product_at, product_between
 from lcpstep.pointers import Doubles, abs, after, max, min
-from lcpstep.stepping.pieces.codes import CLOSED, OPEN, REST, WHOLE
+from lcpstep.stepping.pieces.codes import CLOSED, INERTIA, OPEN, REST, WHOLE
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import look_one, move_gap, move_one, within
 
+SMALL = 8  # coordinates up to which matrices are made anew for the rest of a step
 LANDINGS = 6  # Newton iterations onto the surface
 ON_THE_SURFACE = 0.0625  # of what counts as closed: where these end
 
@@ -34,11 +35,11 @@ def invert(m: Model, plan: Plan, w: Work, rest: float, place: int) -> None:
     n, n_c = w.n_q, w.n_c
     inverse, AG = after(plan.A_inverse, place * n * n), after(plan.AG, place * n_c * n)
     WA = after(plan.WA, place * n_c * n_c)
-    implicit_mass(m, 0.5 * rest, plan.A)
+    implicit_mass(m, 0.5 * rest, w.M)  # which has no factor: the mass matrix of a linear system is constant
     if n == 1:
-        inverse[0] = 1.0 / plan.A[0]
+        inverse[0] = 1.0 / w.M[0]
     else:
-        invert_matrix(plan.A, plan.pivots, 1.0, plan.unit, inverse, n)
+        invert_matrix(w.M, w.moved, 1.0, w.a_try, inverse, n)
     if plan.constant:
         answer_forces(inverse, m.G, AG, WA, n, n_c)
 
@@ -52,17 +53,24 @@ def answer_forces(inverse: Doubles, G: Doubles, AG: Doubles, WA: Doubles, n: int
             WA[d * n_c + c] = product(G, after(AG, c * n), d, n)
 
 
-def accelerate(m: Model, plan: Plan, w: Work) -> int:
-    """Acceleration without contact forces over the rest of the smooth interval; which matrices belong to it."""
+def mobilities(plan: Plan, w: Work, place: int) -> Doubles:
+    """W = G A^-1 G^T with the A of a place."""
+    return w.W if place == INERTIA else after(plan.WA, place * w.n_c * w.n_c)
+
+
+def responses(plan: Plan, w: Work, place: int) -> Doubles:
+    """(A^-1 G^T)^T."""
+    return w.MG if place == INERTIA else after(plan.AG, place * w.n_c * w.n_q)
+
+
+def accelerate(m: Model, plan: Plan, w: Work) -> None:
+    """Acceleration without contact forces over the rest of the smooth interval; the place of its matrices."""
     rest = w.end - w.sigma
-    place = WHOLE if rest == plan.made_for or not plan.stiff else REST
-    if not plan.trapezoidal or plan.steady:
-        return place
-    if place == REST:
-        if plan.small:
-            invert(m, plan, w, rest, REST)
-        else:
-            place = WHOLE
+    w.made_with = REST if plan.stiff and rest != plan.made_for and w.n_q <= SMALL else WHOLE
+    if not m.linear or plan.steady:
+        return
+    if w.made_with == REST:
+        invert(m, plan, w, rest, REST)
     n = w.n_q
     for i in range(n):
         w.a_try[i] = 0.5 * (w.force[i] + w.next_force[i])
@@ -71,8 +79,7 @@ def accelerate(m: Model, plan: Plan, w: Work) -> int:
             for j in range(n):
                 w.a_try[i] -= m.C[i * n + j] * w.v[j] + m.K[i * n + j] * (w.q[j] + 0.5 * rest * w.v[j])
     for i in range(n):
-        w.a_free[i] = product(after(plan.A_inverse, place * n * n), w.a_try, i, n)
-    return place
+        w.a_free[i] = product(after(plan.A_inverse, w.made_with * n * n), w.a_try, i, n)
 
 
 def free_acceleration(m: Model, w: Work, t: float, q: Doubles, v: Doubles, out: Doubles) -> bool:
@@ -89,10 +96,10 @@ def free_acceleration(m: Model, w: Work, t: float, q: Doubles, v: Doubles, out: 
 
 def renew_forces(m: Model, plan: Plan, w: Work, t: float) -> bool:
     """Forces at time t, the base of a piece, or their acceleration without contact; False where the mass fails."""
-    if plan.trapezoidal and not plan.steady:
+    if m.linear and not plan.steady:
         external_force(m, within(w, t), w.q, w.v, w.force)
         w.force_evaluations += 1
-    elif not plan.trapezoidal:
+    elif not m.linear:
         if not free_acceleration(m, w, within(w, t), w.q, w.v, w.a_free):
             return False
         w.force_evaluations += 1
@@ -109,14 +116,9 @@ def respond(m: Model, w: Work) -> None:
     uncouple(w.W, w.G, w.MG, 0, w.n_c, w.n_c, w.n_q)
 
 
-def refactor(m: Model, w: Work, t: float) -> bool:
-    """The factor of the mass matrix at the state w.q."""
-    return factor_mass(m, t, w.q, w.v, w.M)
-
-
 def gap_bias(m: Model, w: Work, t: float, q: Doubles, v: Doubles) -> None:
     """Gap accelerations at v' = 0 into w.bias."""
-    bias(m, t, w.low, w.high, q, v, w.q_try, w.G_try, w.gap_t_try, w.bias)
+    bias(m, within(w, t), w.low, w.high, q, v, w.q_try, w.G_try, w.gap_t_try, w.bias)
 
 
 def gap_accelerations(w: Work, a: Doubles) -> None:
@@ -147,7 +149,7 @@ def look_along(w: Work, tau: float) -> None:
 def renew_mobility(m: Model, plan: Plan, w: Work, t: float) -> bool:
     """What impulses do at the state w.q, where that changes; False where the mass matrix fails."""
     if not plan.constant:
-        if not refactor(m, w, t):
+        if not factor_mass(m, t, w.q, w.v, w.M):
             return False
         respond(m, w)
     return True
@@ -166,14 +168,14 @@ def shift(w: Work, tau: float) -> None:
             move_gap(w, c, tau)
 
 
-def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
+def put_on_surface(m: Model, plan: Plan, w: Work, t: float, q: Doubles) -> None:
     """Q onto g = 0 where a contact is closed, and out of obstacles, with the mass matrix at hand.
 
     Onto the closed ones first: rounding leaves one that closes just now on either side of zero.
     """
     near = ON_THE_SURFACE * plan.slack
     for landing in range(LANDINGS):
-        gaps(m, t, w.q, w.v, w.gap_try)
+        gaps(m, t, q, w.v, w.gap_try)
         worst, closed = 0.0, landing == 0 and closed_off(w) > near
         for c in range(w.n_c):
             if w.status[c] != CLOSED:
@@ -182,9 +184,9 @@ def put_on_surface(m: Model, plan: Plan, w: Work, t: float) -> None:
         if worst <= near:
             return
         if not plan.constant:
-            gap_rates(m, t, w.q, w.v, w.G, w.gap_t)
+            gap_rates(m, t, q, w.v, w.G, w.gap_t)
             respond(m, w)
-        newton_step(w, w.q)
+        newton_step(w, q)
 
 
 def closed_off(w: Work) -> float:
@@ -200,12 +202,8 @@ def settle_state(m: Model, plan: Plan, w: Work, t: float, q: Doubles) -> None:
     """Q, a position within a piece, onto closed contacts and out of obstacles."""
     if plan.plain or w.n_c == 0 or (plan.exact and w.closed_now > 0):
         return
-    copy(w.q_base, w.q, w.n_q)
-    copy(w.q, q, w.n_q)
-    if refactor(m, w, t):
-        put_on_surface(m, plan, w, t)
-    copy(q, w.q, w.n_q)
-    copy(w.q, w.q_base, w.n_q)
+    if factor_mass(m, t, q, w.v, w.M):
+        put_on_surface(m, plan, w, t, q)
 
 
 def newton_step(w: Work, x: Doubles) -> None:
@@ -245,10 +243,10 @@ def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
     add(w.impulse, 0.5 * tau, w.force_now, w.n_c)
     add(w.pushed, 0.5 * tau, w.force_now, w.n_c)
     if w.closed_now > 0:
-        if not refactor(m, w, t_next):
+        if not factor_mass(m, t_next, w.q, w.v, w.M):
             return False
-        put_on_surface(m, plan, w, t_next)
-    if plan.trapezoidal:
+        put_on_surface(m, plan, w, t_next, w.q)
+    if m.linear:
         for i in range(n):
             w.v[i] += 0.5 * tau * (w.a_free[i] + w.a[i])
     else:

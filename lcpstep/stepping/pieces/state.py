@@ -13,7 +13,7 @@ from lcpstep.kernels.sudden import Sudden
 from lcpstep.lcp.workspace import Workspace
 from lcpstep.pointers import Doubles, Indices, after, indices_after, inf
 
-VECTORS, NUMBERS, MARKS = 17, 32, 12  # of n_q numbers each; of n_c; of n_c whole numbers
+VECTORS, NUMBERS, MARKS = 16, 31, 12  # of n_q numbers each; of n_c; of n_c whole numbers
 # Marks that Python reads and writes, after the first
 SEEN = ("chosen", "first_coordinate", "last_coordinate", "first_contact", "last_contact")
 
@@ -23,12 +23,10 @@ class Plan:
 
     h
     made_for        length of pieces that the matrices in the place WHOLE are made for: h, but in parts of a step
-    trapezoidal     a linear system, which order 2 moves by the trapezoidal rule
-    stiff           C or K is not zero; this, the next two and `constant` are asked of trapezoidal systems alone
+    stiff           C or K is not zero; this, the next two and `constant` are asked of linear systems alone
     steady          the acceleration without contact never changes
     plain           flat contacts at rest, of a linear system: gaps of order 2 follow from their own quadratics
     constant        M and the gap Jacobian are constant
-    small           few coordinates: matrices for the rest of a step are made anew
     slack           gaps up to here count as zero
     per_step        events in one step
     many            impacts of a contact in one step after which hops are taken as one if they end within it
@@ -39,27 +37,21 @@ class Plan:
     A_inverse : (2, n_q, n_q)     (M + h/2 C + h^2/4 K)^-1, for WHOLE and REST
     AG : (2, n_c, n_q)            (A^-1 G^T)^T
     WA : (2, n_c, n_c)            G A^-1 G^T
-    A : (n_q, n_q);  unit : (n_q,);  pivots : (n_q,)    work space
 
     Parameters
     ----------
-    fields : dict   these by name, but work space; A_inverse, AG and WA as arrays
+    fields : dict   these by name; A_inverse, AG and WA as arrays
     """
 
     def __init__(self, fields: dict[str, Any]) -> None:
-        n_q = fields["A_inverse"].shape[1]
-        self.fields = fields
         self.h = self.made_for = fields["h"]
-        self.trapezoidal, self.stiff = fields["trapezoidal"], fields["stiff"]
-        self.steady, self.plain, self.constant = fields["steady"], fields["plain"], fields["constant"]
-        self.small, self.exact = fields["small"], fields["exact"]
+        self.stiff, self.steady, self.exact = fields["stiff"], fields["steady"], fields["exact"]
+        self.plain, self.constant = fields["plain"], fields["constant"]
         self.slack, self.longest, self.margin = fields["slack"], fields["longest"], fields["margin"]
         self.per_step, self.many, self.clock = fields["per_step"], fields["many"], fields["clock"]
-        self.kept = np.zeros((n_q + 1) * n_q), np.zeros(n_q, dtype=np.intp)
-        self.A_inverse = doubles(fields["A_inverse"])
-        self.AG, self.WA = doubles(fields["AG"]), doubles(fields["WA"])
-        self.A, self.pivots = doubles(self.kept[0]), indices(self.kept[1])
-        self.unit = after(self.A, n_q * n_q)
+        self.kept = fields["A_inverse"], fields["AG"], fields["WA"]  # which the next three point into
+        self.A_inverse = doubles(self.kept[0])
+        self.AG, self.WA = doubles(self.kept[1]), doubles(self.kept[2])
 
 
 class Work:
@@ -71,7 +63,7 @@ class Work:
     q, v            state at the base of the piece
     a_free, a       acceleration without contact forces, and with them
     force, next_force    F(t) of linear systems at the base, and at the end of the smooth interval
-    q_base, q_try, v_try, a_try    to try; of an impact v_try are the sizes of the terms of v
+    q_try, v_try, a_try    to try; of an impact v_try are the sizes of the terms of v
     jolt            change by the impulses or forces of several contacts
     q_from, v_from, a_from    state, acceleration at the base of a piece within which states are kept
     q_time          time since the start of the step up to which a coordinate has been moved on
@@ -91,13 +83,10 @@ class Work:
     older, older_time    the last positive contact force, and when
     pushed          impulse of forces since the step began, strikes aside, that a tolerance looks at
     impulse         since the last kept state
-    begins          velocity at the base of the piece at hand, where that may jump in it
-    p               impulses of `race`, or forces of closed contacts, by contact; where impulses of an event are
-                    sought it but marks: 1 for contacts still to be looked at in `sequences.choose_connected`, chosen
-                    in `choose_collapsing` and in `impulses.choose_struck`
+    p               impulses of `race`, or forces of closed contacts, by contact
     b, z            of the complementarity problem at hand, and its solution
     residual, change, doubt    what the solution leaves, its correction, and the relative error of factors
-    before          gap velocity before the impact or corner at hand
+    before          gap velocity before the impact or corner at hand, or where the piece begins in which it may jump
     impulse_from    impulses at the base of a piece within which states are kept
     since, next_zero     time since the start of the step to which gap and gap velocity belong, and of the next zero
     turned, turns   time since the start of the step at which a contact last struck, closed or opened, and how often
@@ -112,7 +101,8 @@ class Work:
     close_hits      the latest of them that came at hardly any distance
     plastic         restitution of the event at hand is zero
     chosen          contacts of the problem at hand
-    held, place     those of them that carry an impulse or a force, and their places in the list
+    held, place     those of them that carry an impulse or a force, and their places in the list; where contacts
+                    are chosen `place` but marks them
     first_coordinate, last_coordinate    range of the coordinates that an impulse changes, if constant,
     first_contact, last_contact          and of the gaps
 
@@ -121,7 +111,7 @@ class Work:
     W : (n_c, n_c)              G M^-1 G^T
     M : (n_q, n_q)              factor of a mass matrix that changes
     moved : (n_q,)   coordinates that an impulse moves
-    problem : (n_c, n_c);  pivots : (n_c + 1,);  lcp     work space of complementarity problems
+    problem : (n_c, n_c);  lcp     work space of complementarity problems
     bracket         in which a root is sought;  sudden   in which a jump is
 
     The loop's numbers:
@@ -133,10 +123,10 @@ class Work:
     events          in this step, rounds of the loop without one included
     under_way       whether a step is
     closed_now      how many contacts are closed
+    n_held          how many of them the factor in `problem` has, in `held`; of polynomials alone
     unchanged       whether the gaps have the accelerations of the piece before
     made_with       the place of the matrices that the piece was made with
     touching        whether an open contact may touch at rest
-    doubtful        whether the velocity of a flat obstacle may jump within the smooth interval
     stalled         the stretch of time that events without end are settled over (0: there are none),
     settled         and how often that has been done in this step
     ahead           the time from the base of a piece at which its contact forces were decided
@@ -172,10 +162,9 @@ class Work:
         self.seen |= {"q": self.numbers[:n_q], "v": self.numbers[n_q : 2 * n_q]}
         self.seen["impulse"] = self.numbers[VECTORS * n_q :][:n_c]
         self.matrices = np.zeros(3 * n_c * n_q + n_q * n_q + 2 * n_c * n_c)
-        self.places = np.zeros(n_c + 1 + n_q, dtype=np.intp)
-        self.lcp, self.pivots, self.bracket = Workspace(n_c), indices(self.places), Bracket()
-        self.sudden, self.jump, self.margin, self.doubtful = Sudden(), -inf, 0.0, False
-        self.moved = indices_after(self.pivots, n_c + 1)
+        self.places = np.zeros(n_q, dtype=np.intp)
+        self.lcp, self.moved, self.bracket = Workspace(n_c), indices(self.places), Bracket()
+        self.sudden, self.jump, self.margin = Sudden(), -inf, 0.0
         self.place_vectors(doubles(self.numbers))
         self.place_numbers(after(doubles(self.numbers), VECTORS * n_q))
         self.place_marks(indices(self.marks))
@@ -185,15 +174,9 @@ class Work:
         self.under_way = self.unchanged = self.touching = self.pausing = self.fresh = False
         self.events = self.closed_now = self.made_with = 0
         self.steps = self.lcp_calls = self.force_evaluations = self.events_left = 0
-        self.cut = self.members = self.idle = 0
+        self.cut = self.members = self.idle = self.n_held = 0
         for c in range(n_c):
             self.last_coordinate[c], self.last_contact[c] = n_q - 1, n_c - 1
-
-    def start(self, q: Any, v: Any) -> None:
-        """Begin at a state, arrays (n_q,)."""
-        place, speed = doubles(q), doubles(v)
-        for i in range(self.n_q):
-            self.q[i], self.v[i] = place[i], speed[i]
 
     def place_vectors(self, x: Doubles) -> None:
         """Numbers per coordinate, from x on; the position comes first, then the velocity."""
@@ -201,12 +184,11 @@ class Work:
         self.q, self.v = x, after(x, n)
         self.a_free, self.a = after(x, 2 * n), after(x, 3 * n)
         self.force, self.next_force = after(x, 4 * n), after(x, 5 * n)
-        self.q_base, self.q_try = after(x, 6 * n), after(x, 7 * n)
-        self.v_try, self.a_try = after(x, 8 * n), after(x, 9 * n)
-        self.jolt, self.q_from = after(x, 10 * n), after(x, 11 * n)
-        self.v_from, self.a_from = after(x, 12 * n), after(x, 13 * n)
-        self.q_time, self.swing = after(x, 14 * n), after(x, 15 * n)
-        self.v_struck = after(x, 16 * n)
+        self.q_try, self.v_try = after(x, 6 * n), after(x, 7 * n)
+        self.a_try, self.jolt = after(x, 8 * n), after(x, 9 * n)
+        self.q_from, self.v_from = after(x, 10 * n), after(x, 11 * n)
+        self.a_from, self.q_time = after(x, 12 * n), after(x, 13 * n)
+        self.swing, self.v_struck = after(x, 14 * n), after(x, 15 * n)
 
     def place_numbers(self, x: Doubles) -> None:
         """Numbers per contact, from x on; impulses come first."""
@@ -226,7 +208,7 @@ class Work:
         self.turned, self.turns = after(x, 24 * n), after(x, 25 * n)
         self.hops, self.fall = after(x, 26 * n), after(x, 27 * n)
         self.pushed, self.end_u = after(x, 28 * n), after(x, 29 * n)
-        self.gap, self.begins = after(x, 30 * n), after(x, 31 * n)
+        self.gap = after(x, 30 * n)
 
     def place_marks(self, x: Indices) -> None:
         """Whole numbers per contact, from x on: `status`, those of SEEN, and others."""
