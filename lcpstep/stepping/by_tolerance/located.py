@@ -68,7 +68,7 @@ class Attempts(Parts):
         event_first = self.two.time == 0.0  # before anything moved
         wrong_q, wrong_v = 0.0, 0.0
         self.failed = not self.two.good()
-        self.hopeless = self.two.code == TOO_MANY_EVENTS and self.is_stuck()
+        self.hopeless = self.two.code == TOO_MANY_EVENTS and self.comes_again()
         if not event_first:
             self.failed = self.failed or not self.one.good()
             if not self.failed:
@@ -81,8 +81,8 @@ class Attempts(Parts):
             self.acceleration = distance(self.two.v, self.saved.v, self.w.n_q) / self.two.time
         self.happened = self.two.code == STOPPED or self.record.event > self.event
 
-    def is_stuck(self) -> bool:
-        """Whether events without end come at the instant at which they did before, whatever the step."""
+    def comes_again(self) -> bool:
+        """Keep the instant of events without end; whether they came there before, whatever the step."""
         before, self.stuck = self.stuck, self.base() + self.w.sigma
         return abs(self.stuck - before) <= SAME_TIME * abs(self.stuck)
 

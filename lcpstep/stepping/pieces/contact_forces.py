@@ -2,8 +2,8 @@
 
     0 <= alpha       complementary to  lambda >= 0       on all closed contacts, alpha the gap accelerations
 
-at the start of a piece (`hold`), and the same of gap velocities and impulses at its end (`land`), where normals turn
-or obstacles move. A contact that would have to be pulled opens. Source: G. Osorio, Complex Behavior in Impacting
+at the start of a piece (`hold`), the same of gap velocities and impulses at its end (`stop_closed`), where normals
+turn or obstacles move. A contact that would have to be pulled opens. Source: G. Osorio, Complex Behavior in Impacting
 Systems, eq. 3.15.
 """
 
@@ -37,7 +37,7 @@ def hold(m: Model, plan: Plan, w: Work, t: float) -> bool:
     if n_k == 0:
         return True
     clear(w.fall, w.n_c)
-    place = answered(plan, w)
+    place = fit_responses(plan, w)
     W, MG = mobilities(plan, w, place), responses(plan, w, place)
     if not solve_chosen(m, plan, w, place, n_k, FORCES):
         return False
@@ -77,7 +77,7 @@ def open_or_close(m: Model, plan: Plan, w: Work, W: Doubles, n_k: int, t: float)
         w.force_now[c] = force
 
 
-def answered(plan: Plan, w: Work) -> int:
+def fit_responses(plan: Plan, w: Work) -> int:
     """Place of the matrices by which accelerations answer contact forces over a piece, at the normals at hand.
 
     They are those of the trapezoidal rule: a force changes the velocity that damping answers within the piece.
@@ -219,7 +219,7 @@ def zero_rounding(plan: Plan, w: Work) -> None:
                 w.v[i] = 0.0
 
 
-def land(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
+def stop_closed(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
     """Gap velocities of closed contacts back to zero, with the normals at the end of the piece that began at t.
 
     A contact that would have to be pulled for that opens. Where the motion is the trapezoidal rule's, impulses act as
@@ -234,7 +234,7 @@ def land(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
             n_k += 1
     if n_k == 0:
         return True
-    place = answered(plan, w)
+    place = fit_responses(plan, w)
     W, MG = mobilities(plan, w, place), responses(plan, w, place)
     if not solve_chosen(m, plan, w, place, n_k, IMPULSES):
         return False

@@ -20,10 +20,10 @@ from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.switches import count_turn, idle, stick
 
 
-def event(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
-    """The impact of contact c at w.sigma of the step that began at t, or that of a corner, and what it changes."""
-    now = t + w.sigma
-    if c != CORNER and touches(m, plan, w, c, now, 0.0):
+def event(m: Model, plan: Plan, w: Work, c: int) -> int:
+    """The impact of contact c at w.sigma, or that of a corner, and what it changes."""
+    now = w.t_step + w.sigma
+    if c != CORNER and take_touch(m, plan, w, c, now, 0.0):
         return DONE
     if not renew_mobility(m, plan, w, now):
         return NOT_FINITE
@@ -45,10 +45,10 @@ def event(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     return DONE
 
 
-def touches(m: Model, plan: Plan, w: Work, c: int, t: float, slow: float) -> bool:
-    """Whether contact c, whose gap is zero at t, does not strike; it stays closed if it rises no faster than `slow`.
+def take_touch(m: Model, plan: Plan, w: Work, c: int, t: float, slow: float) -> bool:
+    """Take contact c, whose gap is zero at t, as a touch if it does not strike; whether it was one.
 
-    Or by no more than rounding.
+    It stays closed if it rises no faster than `slow`, or by no more than rounding.
     """
     still = NOISE * speed_terms(plan, w, c)
     if not w.velocity[c] >= -still:
@@ -102,7 +102,7 @@ def straighten_all(m: Model, w: Work, n_s: int) -> None:
 
 
 def straighten_struck(m: Model, w: Work, t: float, n_s: int) -> None:
-    """The same of any contacts, struck at t: the velocities that they have left with, and places of several.
+    """State and gaps of any contacts, struck at t: the velocities that they have left with, and places of several.
 
     One by one these would turn the rounding of impulses that depend on each other over and over, into a tumble: a
     block that falls flat on three feet.

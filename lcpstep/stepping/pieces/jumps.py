@@ -23,8 +23,8 @@ BRIEF = 2.0**-10  # of a piece: what turns within so short a time, its sides inc
 SIDES = 16.0  # of half of such a turn: how far from its middle nothing is left of it
 
 
-def breaks(way: Steps, w: Work, t: float, length: float) -> bool:
-    """Whether a velocity jumps within the piece at hand, which begins at t: the smooth interval ends there then."""
+def find_jump(way: Steps, w: Work, t: float, length: float) -> bool:
+    """End the smooth interval where a velocity jumps within the piece that begins at t; whether one does."""
     if w.closed_now == 0 and not way.told:
         return False
     i = farthest_off(way, w, t, length)
@@ -101,7 +101,7 @@ def velocity(w: Work, i: int) -> float:
 
 
 def size_of(plan: Plan, w: Work, i: int) -> float:
-    """What it is made of in a step, signs left aside."""
+    """Sum of the sizes of the terms of the velocity of gap i within a step."""
     size = abs(w.gap_t_try[i])
     for j in range(w.n_q):
         size += abs(w.G_try[i * w.n_q + j]) * (abs(w.v_try[j]) + plan.h * abs(w.a_free[j]))

@@ -13,7 +13,7 @@ import cython
 from lcpstep.kernels.course import AHEAD, ARRIVED, Stepwise
 from lcpstep.kernels.dynamics import external_force
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.roundings import NOISE, RESOLUTION
 from lcpstep.kernels.status import BUFFER_FULL, DONE, LCP_FAILED, NOT_FINITE, TOO_MANY_EVENTS
 from lcpstep.kernels.vectors import clear, copy, finite, product, size_of_product
 from lcpstep.pointers import abs, max
@@ -40,8 +40,9 @@ class Steps(Stepwise):
     found    whose event ends it, or NOBODY,
     ends     and whether it ends with the smooth interval
     gliding  whether one linear degree of freedom goes on in registers while nothing happens
-    told     whether open contacts have nothing but what jumps in the velocities of `measure_at` either
-    doubtful whether such a velocity may jump within the smooth interval
+    told     whether the velocities of all gaps are compared at both ends of a piece, to find jumps: of flat
+             contacts, by order 2; else those of closed contacts, which must stay zero
+    doubtful whether one of them may jump within the smooth interval
     own      kept states that are in the coordinates of the scene
 
     Parameters
@@ -85,14 +86,15 @@ class Steps(Stepwise):
                 if self.w.steps >= self.last:
                     return DONE
             begin_step(self.m, self.plan, self.w)
-        code = self.step(t0 + self.plan.h * (self.w.steps - first))
+        self.w.t_step = t0 + self.plan.h * (self.w.steps - first)
+        code = self.step()
         if code != DONE:
             return code
         t_next = self.w.goal if self.w.pausing else t0 + self.plan.h * (self.w.steps + 1 - first)
         return end_step(self.plan, self.w, t_next)
 
-    def step(self, t: float) -> int:
-        """The rest of the step that began at t: from w.sigma to its end."""
+    def step(self) -> int:
+        """The rest of the step: from w.sigma to its end."""
         while True:
             if self.w.record.full(4 * self.w.n_c + 4):
                 return BUFFER_FULL
@@ -102,44 +104,44 @@ class Steps(Stepwise):
             if self.w.sigma >= self.w.end:
                 if self.w.end >= self.plan.h:
                     return DONE
-                code = self.begin_interval(t)
+                code = self.begin_interval()
             if self.found == NOBODY and code == DONE:
-                code = self.piece(t)
+                code = self.piece()
             if self.found != NOBODY and code == DONE:
-                code = self.take_event(t)
+                code = self.take_event()
             if code == LCP_FAILED and not (is_finite(self.w) and finite(self.w.W, self.w.n_c * self.w.n_c)):
                 return NOT_FINITE
             if code != DONE and code != AGAIN:
                 return code
 
-    def piece(self, t: float) -> int:
+    def piece(self) -> int:
         """One piece of motion, up to the event that ends it; AGAIN where the motion goes on otherwise."""
-        code = self.begin_piece(t)
+        code = self.begin_piece()
         if code != DONE:
             return code
         if self.w.stalled > 0.0 or self.w.events > self.plan.per_step:  # without end
-            code = settle(self.m, self.plan, self.w, t)
+            code = settle(self.m, self.plan, self.w)
             return AGAIN if code == DONE else code
-        code = self.find(t)
+        code = self.find()
         if code != DONE:
             return code
-        code = self.follow(t)
+        code = self.follow()
         return STOPPED if code == DONE and self.w.blind > 0.0 else code
 
-    def take_event(self, t: float) -> int:
+    def take_event(self) -> int:
         """The event that was found; STOPPED where steps by a tolerance want to look at it."""
         pausing = self.w.pausing and self.found != CORNER
         if pausing:
             copy(self.w.v_struck, self.w.v, self.w.n_q)
-        code = self.strike(t)
+        code = self.strike()
         return STOPPED if pausing and code == DONE else code
 
-    def begin_interval(self, t: float) -> int:
+    def begin_interval(self) -> int:
         """The smooth interval from w.sigma to the next corner or the end of the step.
 
         `found` is CORNER if it begins at one at which velocities of gaps may jump, a contact if the start strikes it.
         """
-        now, self.found = t + self.w.sigma, NOBODY
+        now, self.found = self.w.t_step + self.w.sigma, NOBODY
         if now >= self.w.high - self.w.margin:
             self.w.low, self.w.high = find_corners(self.plan, self.w, now)
             if self.w.jump not in (self.w.low, self.w.high):
@@ -151,7 +153,7 @@ class Steps(Stepwise):
                 go_beyond(self.m, self.w, now)
             if not self.pass_corner(now):
                 return NOT_FINITE
-        self.end_interval(t)
+        self.end_interval()
         if self.w.fresh:
             self.w.fresh = False
             # What rests takes part: there was no time for the forces to part them
@@ -159,17 +161,18 @@ class Steps(Stepwise):
                 self.found = closing_now(self.w)
         return DONE
 
-    def end_interval(self, t: float) -> None:
-        """Where the smooth interval at hand ends within the step that began at t."""
+    def end_interval(self) -> None:
+        """Where the smooth interval at hand ends within the step."""
+        t = self.w.t_step
         self.w.end = self.plan.h
         if t + self.plan.h > self.w.high + self.w.margin:
             self.w.end = max(self.w.high - t, self.w.sigma)
         self.doubtful = not self.told
         self.next_forces(t + self.w.end)
 
-    def cut(self, t: float) -> int:
+    def cut(self) -> int:
         """A velocity jumps within the piece, where the interval ends now; steps by a tolerance are made again."""
-        self.end_interval(t)
+        self.end_interval()
         return STOPPED if self.w.pausing else AGAIN
 
     # --- what the orders differ in -----------------------------------------------------------------------------
@@ -181,22 +184,22 @@ class Steps(Stepwise):
     def next_forces(self, t: float) -> None:
         """What is to be known of the end t of a smooth interval."""
 
-    def begin_piece(self, t: float) -> int:
+    def begin_piece(self) -> int:
         """Accelerations and contact forces at w.sigma; AGAIN if there is nothing to be gone through."""
         return NOT_FINITE
 
-    def find(self, t: float) -> int:
+    def find(self) -> int:
         """How far the piece goes that begins at w.sigma: `tau`, `found` and `ends`."""
         return NOT_FINITE
 
     def measure_at(self, t: float, tau: float) -> None:
         """State, Jacobian and rates of gaps at tau after the base, which is at t, into w.q_try and others."""
 
-    def follow(self, t: float) -> int:
+    def follow(self) -> int:
         """Go on by `tau`."""
         return NOT_FINITE
 
-    def strike(self, t: float) -> int:
+    def strike(self) -> int:
         """The event at w.sigma of the contact that was `found`, or of a corner, and what it changes."""
         return NOT_FINITE
 
@@ -266,7 +269,7 @@ def begin_motion(m: Model, plan: Plan, w: Work, t: float) -> int:
             size += plan.h * acceleration_terms(m, w, c)
             # What its obstacle changes its velocity by in what time is rounded by, and moved off a corner
             rounded = (plan.margin + 4.0 * RESOLUTION * abs(t)) * abs(w.bias[c])
-            if abs(w.velocity[c]) <= 64 * RESOLUTION * size + rounded:
+            if abs(w.velocity[c]) <= NOISE * size + rounded:
                 w.velocity[c], w.status[c] = 0.0, CLOSED
                 w.closed_now += 1
     if w.record.n_times == 0:

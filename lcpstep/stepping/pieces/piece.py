@@ -17,7 +17,7 @@ from lcpstep.kernels.together import gap_rounding
 from lcpstep.kernels.vectors import copy, distance, product
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.pieces.codes import CLOSED, LEFT, NOBODY, OPEN
-from lcpstep.stepping.pieces.contact_forces import hold, land
+from lcpstep.stepping.pieces.contact_forces import hold, stop_closed
 from lcpstep.stepping.pieces.keep import keep_between, keep_times, remember
 from lcpstep.stepping.pieces.smooth import (
     ON_THE_SURFACE,
@@ -64,7 +64,7 @@ def begin_piece(m: Model, plan: Plan, w: Work, t: float) -> bool:
         if closed:
             pressed(plan, w)
     else:
-        fitted(m, plan, w, t, w.end - w.sigma)
+        fit_gaps(m, plan, w, t)
     for c in range(n_c):
         if w.status[c] == CLOSED:
             w.gap[c] = w.velocity[c] = w.half[c] = 0.0
@@ -106,8 +106,9 @@ def pressed(plan: Plan, w: Work) -> None:
                 w.half[c] += 0.5 * WA[c * w.n_c + d] * force
 
 
-def fitted(m: Model, plan: Plan, w: Work, t: float, rest: float) -> None:
+def fit_gaps(m: Model, plan: Plan, w: Work, t: float) -> None:
     """Gap quadratics that fit the gap at the end of the piece; from accelerations where gaps tell less than these."""
+    rest = w.end - w.sigma
     look_along(w, rest)
     gaps(m, t + rest, w.q_try, w.v, w.gap_try)
     for c in range(w.n_c):
@@ -143,7 +144,7 @@ def from_ground(plan: Plan, w: Work, c: int) -> bool:
 def first_contact(plan: Plan, w: Work, rest: float, t_end: float, past: float, but: int) -> tuple[int, float]:
     """Which gap closes first, and when; NOBODY and the end of the piece if none does.
 
-    Of those that do so after contact `but` does, at `past`; none: NOBODY and a time before the base.
+    What closes before `past` is left out, and at `past` contacts up to number `but`.
     """
     found, tau = NOBODY, rest + untold(t_end, plan.h)
     for c in range(w.n_c):
@@ -212,9 +213,9 @@ def between(m: Model, w: Work, c: int, t: float, low: float, high: float) -> flo
     return w.bracket.b
 
 
-def move(m: Model, plan: Plan, w: Work, t: float, tau: float, to_end: bool) -> int:
+def move(m: Model, plan: Plan, w: Work, tau: float, to_end: bool) -> int:
     """Go on to w.sigma + tau; contacts that were closed all the way stay on the surface."""
-    now = t + w.sigma
+    now = w.t_step + w.sigma
     end = now + tau - untold(now + tau, plan.h)  # to rounding: states there come after the impact
     wanted = w.record.awaited() < end
     if wanted and plan.plain:
@@ -239,7 +240,7 @@ def move(m: Model, plan: Plan, w: Work, t: float, tau: float, to_end: bool) -> i
         else:
             if not renew_mobility(m, plan, w, now + tau):
                 return NOT_FINITE
-            if not land(m, plan, w, now, tau):
+            if not stop_closed(m, plan, w, now, tau):
                 return LCP_FAILED
             if taken or penetrates(plan, w):
                 copy(w.q_try, w.q, w.n_q)

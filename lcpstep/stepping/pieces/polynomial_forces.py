@@ -22,7 +22,9 @@ from lcpstep.stepping.pieces.smooth import free_acceleration, gap_accelerations,
 from lcpstep.stepping.pieces.state import Plan, Work
 from lcpstep.stepping.pieces.times import within
 
-UNDECIDED = -1.0  # in place of a time ahead
+UNDECIDED = (
+    -1.0
+)  # in place of a time ahead: the next piece decides its forces a little later than at its base
 
 
 def load(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, length: float) -> bool:
@@ -32,7 +34,7 @@ def load(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, length: float) 
         return True
     w.ahead = SOON * length if w.ahead == UNDECIDED else 0.0
     if w.ahead > 0.0:
-        return look_ahead(m, plan, w, z, t, w.ahead)
+        return look_ahead(m, plan, w, z, t)
     if not free_acceleration(m, w, within(w, t), w.q, w.v, w.a_free):
         return False
     needed = w.closed_now > 0 or w.touching
@@ -44,14 +46,14 @@ def load(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, length: float) 
     return decide(m, plan, w, t, w.q, w.v, t)
 
 
-def look_ahead(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, ahead: float) -> bool:
-    """The same where a contact force vanishes: which contacts are closed from now on shows a little later.
+def look_ahead(m: Model, plan: Plan, w: Work, z: Polynomial, t: float) -> bool:
+    """What `load` does, where a contact force vanishes: which contacts are closed from now on shows a little later.
 
     There forces are as their first derivative that does not vanish says. The way there is that of the forces now.
     """
     if not acceleration(m, plan, w, t, w.q, w.v, w.a):
         return False
-    q, v = z.q_stage, z.v_stage
+    q, v, ahead = z.q_stage, z.v_stage, w.ahead
     for i in range(w.n_q):
         q[i] = w.q[i] + ahead * (w.v[i] + 0.5 * ahead * w.a[i])
         v[i] = w.v[i] + ahead * w.a[i]

@@ -14,9 +14,9 @@ from lcpstep.kernels.status import DONE, LCP_FAILED, NOT_FINITE
 from lcpstep.kernels.vectors import copy, distance, product
 from lcpstep.pointers import abs, max, min
 from lcpstep.stepping.pieces.codes import AGAIN, CLOSED, CORNER, LEFT, NOBODY
-from lcpstep.stepping.pieces.event import straighten_struck, touches
+from lcpstep.stepping.pieces.event import straighten_struck, take_touch
 from lcpstep.stepping.pieces.impulses import strike
-from lcpstep.stepping.pieces.jumps import breaks
+from lcpstep.stepping.pieces.jumps import find_jump
 from lcpstep.stepping.pieces.keep import keep_event
 from lcpstep.stepping.pieces.loop import Steps
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, velocity_of
@@ -61,9 +61,9 @@ class PolynomialSteps(Steps):
         self.z, self.opens = Polynomial(m.n_q, m.n_c), False
         self.watched = not plan.exact and (moves(m) or not m.flat)
 
-    def begin_piece(self, t: float) -> int:
+    def begin_piece(self) -> int:
         """Accelerations, and which contacts are closed."""
-        now = t + self.w.sigma
+        now = self.w.t_step + self.w.sigma
         # Of so short a rest positions cannot tell the ends apart
         if self.w.end - self.w.sigma <= untold(now, self.plan.h):
             self.w.sigma = self.w.end
@@ -71,15 +71,15 @@ class PolynomialSteps(Steps):
         length = min(self.w.end - self.w.sigma, self.plan.longest)
         return DONE if load(self.m, self.plan, self.w, self.z, now, length) else LCP_FAILED
 
-    def find(self, t: float) -> int:
+    def find(self) -> int:
         """The polynomial, and the first event on it."""
-        now, length = t + self.w.sigma, min(self.w.end - self.w.sigma, self.plan.longest)
+        now, length = self.w.t_step + self.w.sigma, min(self.w.end - self.w.sigma, self.plan.longest)
         self.found, self.opens, self.tau = NOBODY, False, length
         if not expand(self.m, self.plan, self.w, self.z, now, length):
             return NOT_FINITE
-        if self.watched and is_off(self.w, self.z) and breaks(self, self.w, now, length):
+        if self.watched and is_off(self.w, self.z) and find_jump(self, self.w, now, length):
             self.w.ahead = UNDECIDED if self.w.ahead > 0.0 else 0.0
-            return self.cut(t)
+            return self.cut()
         if self.w.blind > 0.0:
             self.tau = min(length, self.w.blind)
         else:
@@ -104,16 +104,17 @@ class PolynomialSteps(Steps):
         at = within(self.w, t + tau)
         gap_rates(self.m, at, self.w.q_try, self.w.v_try, self.w.G_try, self.w.gap_t_try)
 
-    def follow(self, t: float) -> int:
+    def follow(self) -> int:
         """Go on along the polynomial."""
-        return follow(self.m, self.plan, self.w, self.z, t, self.tau, self.ends)
+        return follow(self.m, self.plan, self.w, self.z, self.tau, self.ends)
 
-    def strike(self, t: float) -> int:
+    def strike(self) -> int:
         """A contact opens, or lands, or a corner turns velocities."""
+        now = self.w.t_step + self.w.sigma
         if self.found != CORNER and self.opens:
-            lose_force(self.m, self.plan, self.w, t + self.w.sigma, self.found)
+            lose_force(self.m, self.plan, self.w, now, self.found)
             return DONE
-        return land(self.m, self.plan, self.w, t + self.w.sigma, self.found)
+        return land(self.m, self.plan, self.w, now, self.found)
 
 
 def is_off(w: Work, z: Polynomial) -> bool:
@@ -137,9 +138,9 @@ def lose_force(m: Model, plan: Plan, w: Work, t: float, c: int) -> None:
     keep_event(w, t)
 
 
-def follow(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, ends: bool) -> int:
+def follow(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float, ends: bool) -> int:
     """Go on to w.sigma + tau along the polynomial."""
-    now = t + w.sigma
+    now = w.t_step + w.sigma
     end = now + tau - untold(now + tau, plan.h)  # to rounding: states there come after the impact
     while w.record.awaited() < end:
         state_at(m, plan, w, z, max(0.0, w.record.awaited() - now))
@@ -161,7 +162,7 @@ def follow(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, e
     copy(w.v, z.v, w.n_q)
     for c in range(w.n_c):
         w.grounded[c] = 0
-        z.gap_to[c] = carried(m, plan, w, z, tau, c)
+        z.gap_to[c] = fine_gap(m, plan, w, z, tau, c)
     measure(m, w, now + tau)
     if not on_surface(plan, w) and (w.closed_now > 0 or penetrates(plan, w)):
         if not renew_mobility(m, plan, w, now + tau):
@@ -176,7 +177,7 @@ def follow(m: Model, plan: Plan, w: Work, z: Polynomial, t: float, tau: float, e
     return DONE
 
 
-def carried(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float, c: int) -> float:
+def fine_gap(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float, c: int) -> float:
     """A low gap at tau after the base of the piece, finer than positions tell; 0 where they tell enough.
 
     A landing that follows in another piece would be late by their rounding over its speed, which grows in chattering.
@@ -200,7 +201,7 @@ def land(m: Model, plan: Plan, w: Work, t: float, c: int) -> int:
     if c != CORNER:
         again = w.sigma - w.last[c] <= SLOW * plan.h
         slow = SLOW * plan.h * acceleration_terms(m, w, c) if again else 0.0
-        if touches(m, plan, w, c, t, slow):
+        if take_touch(m, plan, w, c, t, slow):
             w.last[c] = w.sigma
             return DONE
     if not acceleration(m, plan, w, t, w.q, w.v, w.a):

@@ -15,7 +15,7 @@ from lcpstep.kernels.vectors import product
 from lcpstep.pointers import abs, min
 from lcpstep.stepping.pieces.codes import AGAIN, NOBODY
 from lcpstep.stepping.pieces.event import event
-from lcpstep.stepping.pieces.jumps import breaks
+from lcpstep.stepping.pieces.jumps import find_jump
 from lcpstep.stepping.pieces.loop import Steps
 from lcpstep.stepping.pieces.piece import begin_piece, first_contact, move, polish
 from lcpstep.stepping.pieces.race import race
@@ -56,21 +56,21 @@ class QuadraticSteps(Steps):
                 self.doubtful = self.doubtful or off > self.w.sudden.drift
                 self.w.end_u[c], self.w.end_s[c] = u, s
 
-    def begin_piece(self, t: float) -> int:
+    def begin_piece(self) -> int:
         """Accelerations and gap quadratics."""
-        return DONE if begin_piece(self.m, self.plan, self.w, t + self.w.sigma) else LCP_FAILED
+        return DONE if begin_piece(self.m, self.plan, self.w, self.w.t_step + self.w.sigma) else LCP_FAILED
 
-    def find(self, t: float) -> int:
+    def find(self) -> int:
         """The first gap that closes; AGAIN after impacts of many bodies."""
         rest = self.w.end - self.w.sigma
         self.found, self.tau = NOBODY, rest
-        if self.doubtful and breaks(self, self.w, t + self.w.sigma, rest):
-            return self.cut(t)
+        if self.doubtful and find_jump(self, self.w, self.w.t_step + self.w.sigma, rest):
+            return self.cut()
         if self.w.blind > 0.0:
             self.tau = min(rest, self.w.blind)
         else:
-            self.found, self.tau = closing(self.m, self.plan, self.w, t, rest)
-            if self.found != NOBODY and take_in_turn(self.m, self.plan, self.w, t):
+            self.found, self.tau = closing(self.m, self.plan, self.w, rest)
+            if self.found != NOBODY and take_in_turn(self.m, self.plan, self.w):
                 return AGAIN
         self.ends = self.found == NOBODY and self.tau == rest
         return DONE
@@ -89,40 +89,41 @@ class QuadraticSteps(Steps):
             own = mean - product(self.m.G, self.w.a, c, self.w.n_q)
             self.w.gap_t_try[c] = self.w.gap_t_try[c] + tau * own
 
-    def follow(self, t: float) -> int:
+    def follow(self) -> int:
         """Go on along the quadratics."""
-        return move(self.m, self.plan, self.w, t, self.tau, self.ends)
+        return move(self.m, self.plan, self.w, self.tau, self.ends)
 
-    def strike(self, t: float) -> int:
+    def strike(self) -> int:
         """The impact of a contact, or that of a corner."""
-        return event(self.m, self.plan, self.w, t, self.found)
+        return event(self.m, self.plan, self.w, self.found)
 
 
-def closing(m: Model, plan: Plan, w: Work, t: float, rest: float) -> tuple[int, float]:
+def closing(m: Model, plan: Plan, w: Work, rest: float) -> tuple[int, float]:
     """Which gap closes first in the rest of the smooth interval, and when; or NOBODY and how far one can go.
 
     One that closes later than its quadratic says, or never, hides none that closes before.
     """
     found, until, past, but, searching = NOBODY, rest, -1.0, NOBODY, True
+    now = w.t_step + w.sigma
     while searching:
-        c, tau = first_contact(plan, w, until, t + w.end, past, but)
+        c, tau = first_contact(plan, w, until, w.t_step + w.end, past, but)
         past, but, searching = tau, c, c != NOBODY and not plan.plain
         if searching:
-            c, tau = polish(m, plan, w, c, t + w.sigma, tau, rest)
+            c, tau = polish(m, plan, w, c, now, tau, rest)
         if tau < until or (c != NOBODY and found == NOBODY):
             found, until = c, tau
-    if found != NOBODY and at_corner(plan, w, t + w.sigma + until):
+    if found != NOBODY and at_corner(plan, w, now + until):
         return NOBODY, rest
     if found == NOBODY and until < rest:
         idle(w)
     return found, until
 
 
-def take_in_turn(m: Model, plan: Plan, w: Work, t: float) -> bool:
+def take_in_turn(m: Model, plan: Plan, w: Work) -> bool:
     """Impacts of many bodies, one after another, where these can be followed so; whether there were any."""
     if not (plan.plain and plan.steady and w.n_c > 1 and w.closed_now == 0):
         return False
-    return race(m, plan, w, t, room(plan, w)) > 0
+    return race(m, plan, w, room(plan, w)) > 0
 
 
 def room(plan: Plan, w: Work) -> int:

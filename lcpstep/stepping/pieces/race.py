@@ -26,12 +26,12 @@ from lcpstep.stepping.pieces.switches import COLLAPSE
 from lcpstep.stepping.pieces.times import look_one, move_gap, move_one, untold
 
 
-def race(m: Model, plan: Plan, w: Work, t: float, most: int) -> int:
-    """Impacts in the rest of the smooth interval of the step that began at t, at most so many; how many there were.
+def race(m: Model, plan: Plan, w: Work, most: int) -> int:
+    """Impacts in the rest of the smooth interval, at most so many; how many there were.
 
     All stand at the time of the last of them, the new w.sigma.
     """
-    n_c, done, struck, now = w.n_c, 0, -1, w.sigma
+    t, n_c, done, struck, now = w.t_step, w.n_c, 0, -1, w.sigma
     for i in range(w.n_q):
         w.q_time[i] = w.sigma
     for c in range(n_c):
@@ -45,7 +45,7 @@ def race(m: Model, plan: Plan, w: Work, t: float, most: int) -> int:
         tau = w.next_zero[c]
         if not tau <= w.end or not ordinary(m, plan, w, c, tau):
             break
-        keep_before(plan, w, t, now, tau)
+        keep_before(plan, w, now, tau)
         hit(m, w, c, tau)
         w.record.note(t + tau, c, w.before[c], w.velocity[c], w.p[c], IMPACT)
         w.lcp_calls += 1
@@ -66,8 +66,9 @@ def look_at(w: Work, tau: float) -> None:
         look_one(w, i, tau - w.q_time[i])
 
 
-def keep_before(plan: Plan, w: Work, t: float, now: float, tau: float) -> None:
+def keep_before(plan: Plan, w: Work, now: float, tau: float) -> None:
     """Keep the states asked for from now on before the impact at tau; to rounding, those there come after it."""
+    t = w.t_step
     before = t + tau - untold(t + tau, plan.h)
     while w.record.awaited() < before:
         look_at(w, max(now, w.record.awaited() - t))

@@ -186,7 +186,7 @@ def release_at(m: Model, plan: Plan, w: Work, z: Polynomial, end: float, probe: 
 def brief_release(
     m: Model, plan: Plan, w: Work, z: Polynomial, end: float, probe: int, last: int
 ) -> tuple[int, float]:
-    """The same of contacts that press at a probe and at the one before, and pull in between; `last` is known too."""
+    """Which contact presses at a probe and the one before, and pulls in between, and when; `last` is known too."""
     n_c, found, first, h, before = w.n_c, NOBODY, end, 0.5 * end / PROBES, probe - 2 if probe > 1 else 0
     for c in range(n_c if probe > 0 else 0):
         left, right = z.pressed[(probe - 1) * n_c + c], z.pressed[probe * n_c + c]
@@ -218,7 +218,7 @@ def rises(
     """Whether contact c, whose force vanishes at tau and pulls at x, is let go by more than rounding of its gap.
 
     A force that touches zero pulls for a moment by the error of the polynomial. Until it presses again a parabola is
-    deeper than what is seen of it by a quarter of `WIDER` at most.
+    deeper than what is seen of it by a quarter of `WIDER` at most. Forces later than x are left in w.p.
     """
     span, lowest = x - tau, force
     w.p[c] = force

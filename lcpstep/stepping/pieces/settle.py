@@ -44,11 +44,11 @@ from lcpstep.stepping.pieces.switches import SHORT_TOGETHER, release, stick
 from lcpstep.stepping.pieces.times import within
 
 
-def settle(m: Model, plan: Plan, w: Work, t: float) -> int:
+def settle(m: Model, plan: Plan, w: Work) -> int:
     """Settle the motion from w.sigma on, with the accelerations of the piece that begins there."""
     n, rest = w.n_q, w.end - w.sigma
     span = min(rest, w.stalled * pow(2.0, w.settled)) if w.events <= plan.per_step else rest
-    now = t + w.sigma
+    now = w.t_step + w.sigma
     if not meet(m, plan, w, now, span):
         return LCP_FAILED
     if matters(m, w, span > SHORT_TOGETHER * plan.h):
@@ -62,10 +62,10 @@ def settle(m: Model, plan: Plan, w: Work, t: float) -> int:
             add(w.v, p, after(w.MG, c * n), n)
     add(w.q, span, w.v, n)
     w.sigma = w.end if span == rest else w.sigma + span
-    note(m, plan, w, now, t + w.sigma, span)
+    note(m, plan, w, now, w.t_step + w.sigma, span)
     w.stalled, w.unchanged = 0.0, False
     w.settled += 1.0
-    return begin_again(m, plan, w, t + w.sigma)
+    return begin_again(m, plan, w, w.t_step + w.sigma)
 
 
 def meet(m: Model, plan: Plan, w: Work, t: float, span: float) -> bool:

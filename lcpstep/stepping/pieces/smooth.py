@@ -232,7 +232,7 @@ def push_held(w: Work, MG: Doubles, stride: int, n_k: int, x: Doubles) -> None:
 def advance(m: Model, plan: Plan, w: Work, t: float, tau: float) -> bool:
     """The state at tau after the base becomes the base; False where the mass matrix fails.
 
-    With a Jacobian that changes, the contact forces of the base act over half the piece; `land` gives the rest.
+    With a Jacobian that changes, contact forces of the base act over half the piece; `stop_closed` gives the rest.
     """
     if plan.plain:
         shift(w, tau)

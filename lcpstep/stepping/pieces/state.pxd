@@ -22,7 +22,7 @@ cdef class Work:
     cdef Doubles since, next_zero, turned, turns, hops, fall, pushed, impulse, G, G_try, MG, W, M, problem
     cdef Indices status, grounded, hits, close_hits, plastic, chosen, held, place, first_coordinate
     cdef Indices last_coordinate, first_contact, last_contact, moved
-    cdef public double sigma, end, low, high, stalled, settled, ahead, blind, goal, off
+    cdef public double t_step, sigma, end, low, high, stalled, settled, ahead, blind, goal, off
     cdef public bint under_way, unchanged, touching, pausing, fresh
     cdef Py_ssize_t n_held
     cdef public Py_ssize_t events, closed_now, made_with

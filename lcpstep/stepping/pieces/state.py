@@ -115,7 +115,8 @@ class Work:
     bracket         in which a root is sought;  sudden   in which a jump is
 
     The loop's numbers:
-    sigma           time since the start of the step
+    t_step          time at which the step began,
+    sigma           and since then: the base of the piece is at t_step + sigma
     end             of the smooth interval in the step
     low, high       the interval of time without corners
     jump            the corner found last that the scene does not name
@@ -169,7 +170,7 @@ class Work:
         self.place_numbers(after(doubles(self.numbers), VECTORS * n_q))
         self.place_marks(indices(self.marks))
         self.place_matrices(doubles(self.matrices))
-        self.sigma = self.end = self.low = self.high = self.stalled = self.settled = 0.0
+        self.t_step = self.sigma = self.end = self.low = self.high = self.stalled = self.settled = 0.0
         self.ahead = self.blind = self.goal = self.off = 0.0
         self.under_way = self.unchanged = self.touching = self.pausing = self.fresh = False
         self.events = self.closed_now = self.made_with = 0

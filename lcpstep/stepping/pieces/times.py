@@ -37,7 +37,7 @@ def look_one(w: Work, i: int, tau: float) -> None:
 
 
 def move_one(w: Work, i: int, tau: float) -> None:
-    """Those become its base."""
+    """Move coordinate i and its velocity on by tau."""
     w.q[i] += tau * (w.v[i] + 0.5 * tau * w.a[i])
     w.v[i] += tau * w.a[i]
 
