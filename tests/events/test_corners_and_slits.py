@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from lagrangian import Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, Scene
+from lagrangian import Contacts, Coulomb, Harmonic, LinearContacts, LinearJoints, LinearSystem, Scene
 from lcpstep import EventDriven, Kind, Located, Moreau, Status, simulate
 from lcpstep.gaps import closing_in
 from tests.marks import shared
@@ -286,3 +286,28 @@ def test_a_corner_with_a_wall_nearly_along_the_way_is_one_impact():
     expected = after_it(Located(1e-3, order=4), 0.8)
     for t_end in np.linspace(0.8, 3.0, 200):
         np.testing.assert_allclose(after_it(EventDriven(), float(t_end)), expected, rtol=0, atol=1e-9)
+
+
+def lids(t, q, v, p, out):
+    out[0], out[1], out[2] = q[0], q[1], 1.0 - t - q[1]
+
+
+def normals_of_lids(t, q, v, p, out):
+    out[:] = 0.0
+    out[0, 0], out[1, 1], out[2, 1] = 1.0, 1.0, -1.0
+
+
+def closing(t, q, v, p, out):
+    out[0], out[1], out[2] = 0.0, 0.0, -1.0
+
+
+@pytest.mark.parametrize(
+    "method", [Located(1e-2, tolerance=1e-4), Located(1e-2, order=4, tolerance=1e-4), EventDriven()], ids=repr
+)
+def test_the_contacts_that_have_no_forces_are_named_though_steps_have_gone_back(method):
+    """A body bounces on its own as a lid comes down on another: named was the contact of the last good step."""
+    contacts = Contacts(3, lids, normals_of_lids, gap_t=closing, restitution=[0.5, 0.0, 0.0])
+    system = LinearSystem(np.eye(2), force=[-10.0, -10.0])
+    m = simulate(Scene(system, contacts=contacts, q0=[1.0, 0.0], v0=[0.0, 0.0], t_span=(0.0, 2.0)), method)
+    assert m.t[-1] == pytest.approx(1.0, abs=1e-9)
+    assert "the obstacles of contacts [1, 2] approach each other" in m.message

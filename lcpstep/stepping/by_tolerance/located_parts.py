@@ -24,7 +24,7 @@ from lcpstep.stepping.pieces.corners import find_corners
 from lcpstep.stepping.pieces.keep import keep_now
 from lcpstep.stepping.pieces.loop import Steps
 from lcpstep.stepping.pieces.smooth import SMALL, invert
-from lcpstep.stepping.pieces.state import Work
+from lcpstep.stepping.pieces.state import MARKS, Work
 from lcpstep.stepping.pieces.switches import COLLAPSE
 
 
@@ -60,7 +60,7 @@ def copy_state(to: Work, w: Work, n_numbers: int, n_marks: int, n_matrices: int)
     to.stalled, to.settled, to.ahead = w.stalled, w.settled, w.ahead
     to.under_way, to.touching, to.fresh = w.under_way, w.touching, w.fresh
     to.events, to.closed_now, to.made_with = w.events, w.closed_now, w.made_with
-    to.steps, to.cut, to.members, to.idle = w.steps, w.cut, w.members, w.idle
+    to.steps, to.cut, to.idle = w.steps, w.cut, w.idle
 
 
 class Parts(Control):
@@ -94,7 +94,7 @@ class Parts(Control):
         self.way, self.m, self.plan, self.w = way, way.m, plan, w
         self.saved, self.own_row = Work(w.n_q, w.n_c), np.zeros(way.w.record.row_size)
         self.last_row = doubles(self.own_row)
-        self.n_numbers, self.n_marks = len(w.numbers), len(w.marks)
+        self.n_numbers, self.n_marks = len(w.numbers), MARKS * w.n_c
         self.n_matrices = 0 if plan.constant else len(w.matrices)
         places = OWN + 1 if self.m.linear else 1
         self.matrices = {name: np.zeros((places, *x.shape)) for name, x in make(h).items()}

@@ -13,9 +13,9 @@ from lcpstep.kernels.sudden import Sudden
 from lcpstep.lcp.workspace import Workspace
 from lcpstep.pointers import Doubles, Indices, after, indices_after, inf
 
-VECTORS, NUMBERS, MARKS = 16, 31, 12  # of n_q numbers each; of n_c; of n_c whole numbers
-# Marks that Python reads and writes, after the first
-SEEN = ("chosen", "first_coordinate", "last_coordinate", "first_contact", "last_contact")
+VECTORS, NUMBERS, MARKS = 16, 31, 9  # of n_q numbers each; of n_c; of n_c whole numbers
+LISTS = 3  # of n_c whole numbers more: contacts of the problem at hand
+SEEN = ("first_coordinate", "last_coordinate", "first_contact", "last_contact")  # by Python, after the first
 
 
 class Plan:
@@ -100,11 +100,13 @@ class Work:
     hits            impacts in this step
     close_hits      the latest of them that came at hardly any distance
     plastic         restitution of the event at hand is zero
-    chosen          contacts of the problem at hand
-    held, place     those of them that carry an impulse or a force, and their places in the list; where contacts
-                    are chosen `place` but marks them
     first_coordinate, last_coordinate    range of the coordinates that an impulse changes, if constant,
     first_contact, last_contact          and of the gaps
+
+    Lists, of the problem at hand alone: steps by a tolerance that go back leave them as they are
+    chosen          its contacts
+    held, place     those of them that carry an impulse or a force, and their places in the list; where contacts
+                    are chosen `place` but marks them
 
     Matrices, row by row:
     G, G_try, MG : (n_c, n_q)   gap Jacobian, one to try, (M^-1 G^T)^T
@@ -158,9 +160,10 @@ class Work:
         self.n_q, self.n_c = n_q, n_c
         self.record: Any = None
         self.numbers = np.zeros(VECTORS * n_q + NUMBERS * n_c)
-        self.marks = np.zeros(MARKS * n_c, dtype=np.intp)
+        self.marks = np.zeros((MARKS + LISTS) * n_c, dtype=np.intp)
         self.seen: dict[str, Any] = {name: self.marks[(k + 1) * n_c :][:n_c] for k, name in enumerate(SEEN)}
         self.seen |= {"q": self.numbers[:n_q], "v": self.numbers[n_q : 2 * n_q]}
+        self.seen["chosen"] = self.marks[MARKS * n_c :][:n_c]
         self.seen["impulse"] = self.numbers[VECTORS * n_q :][:n_c]
         self.matrices = np.zeros(3 * n_c * n_q + n_q * n_q + 2 * n_c * n_c)
         self.places = np.zeros(n_q, dtype=np.intp)
@@ -212,13 +215,13 @@ class Work:
         self.gap = after(x, 30 * n)
 
     def place_marks(self, x: Indices) -> None:
-        """Whole numbers per contact, from x on: `status`, those of SEEN, and others."""
+        """Whole numbers per contact, from x on: `status`, those of SEEN, others, and LISTS."""
         n = self.n_c
-        self.status, self.chosen = x, indices_after(x, n)
-        self.first_coordinate, self.last_coordinate = indices_after(x, 2 * n), indices_after(x, 3 * n)
-        self.first_contact, self.last_contact = indices_after(x, 4 * n), indices_after(x, 5 * n)
-        self.hits, self.close_hits = indices_after(x, 6 * n), indices_after(x, 7 * n)
-        self.plastic, self.grounded = indices_after(x, 8 * n), indices_after(x, 9 * n)
+        self.status, self.first_coordinate = x, indices_after(x, n)
+        self.last_coordinate, self.first_contact = indices_after(x, 2 * n), indices_after(x, 3 * n)
+        self.last_contact, self.hits = indices_after(x, 4 * n), indices_after(x, 5 * n)
+        self.close_hits, self.plastic = indices_after(x, 6 * n), indices_after(x, 7 * n)
+        self.grounded, self.chosen = indices_after(x, 8 * n), indices_after(x, 9 * n)
         self.held, self.place = indices_after(x, 10 * n), indices_after(x, 11 * n)
 
     def place_matrices(self, x: Doubles) -> None:
