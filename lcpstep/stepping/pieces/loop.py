@@ -260,6 +260,8 @@ def begin_motion(m: Model, plan: Plan, w: Work, t: float) -> int:
     measure(m, w, t)
     if plan.constant:
         respond(m, w)
+        for c in range(w.n_c):
+            w.alpha[c] = product(m.G, w.a_free, c, w.n_q)
     if not plan.plain:
         gap_bias(m, w, t, w.q, w.v)
     for c in range(w.n_c):

@@ -80,8 +80,9 @@ def flat_accelerations(m: Model, plan: Plan, w: Work, t: float) -> None:
     soon over obeys the obstacle's acceleration at its beginning: by the mean it would land with another speed than it
     has begun with, always higher or always lower, thousands of times in a piece.
     """
-    for c in range(w.n_c):
-        w.alpha[c] = product(m.G, w.a_free, c, w.n_q)
+    if not plan.steady or moves(m):
+        for c in range(w.n_c):
+            w.alpha[c] = product(m.G, w.a_free, c, w.n_q)
     if moves(m):
         obstacle(m, within(w, t), w.q, w.v)
         for c in range(w.n_c):
