@@ -13,11 +13,10 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles
-from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.roundings import MARGIN, RESOLUTION
 from lcpstep.pointers import abs, inf, max, min
 
 LEAST = 2.0**-960  # numbers that have their digits in products, too
-NUDGE = 2.0**-49  # relative; keeps accelerations on their own side of a corner
 
 
 class Clock:
@@ -78,7 +77,7 @@ class Clock:
 
     def margin(self, t: float) -> float:
         """By how much a time is moved to be on its own side of a corner."""
-        return NUDGE * max(abs(t), self.scale)
+        return MARGIN * max(abs(t), self.scale)
 
     def inside(self, t: float) -> float:
         """A time moved off the ends of its smooth interval, where accelerations may jump."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from lagrangian import Scene
 from lcpstep.errors import LcpStepError
-from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.roundings import MARGIN, RESOLUTION
 
 WHOLE = 1e-9  # of a step: a span this close to a whole number of steps is taken as one
 LATE = 1e-9  # of a step: what rounding may take from the end of the last one
@@ -30,8 +30,6 @@ CANCELLED = 0.1  # of the terms that it is the sum of: near rest it cannot be kn
 ROUNDING = 1e-13  # of these terms: what is left of it is no motion
 NO_APPROACH = 1e-11  # of the terms of a frictional contact's rate
 CONTRADICTION = 1e-9  # of the terms of a joint's rate: what may be left of it
-# Relative: what rounding may make of the phase of a callback, and of the time of a corner, off which times are moved
-MARGIN = 2.0**-49
 
 
 def largest(*numbers: Any) -> float:

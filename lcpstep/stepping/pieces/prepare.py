@@ -12,12 +12,12 @@ from lagrangian import Scene
 from lcpstep.kernels.clock import Clock
 from lcpstep.kernels.dynamics import moves, varies
 from lcpstep.kernels.model import Model
-from lcpstep.kernels.roundings import NOISE
+from lcpstep.kernels.roundings import MARGIN, NOISE
 from lcpstep.model import ends
 from lcpstep.stepping.extent import extent, is_stiff
 from lcpstep.stepping.pieces.carried import displaced
 from lcpstep.stepping.pieces.state import Plan, Work
-from lcpstep.stepping.steps import MARGIN, implicit_mass, inverse
+from lcpstep.stepping.steps import implicit_mass, inverse
 from lcpstep.turns import turns
 
 if TYPE_CHECKING:
