@@ -1,6 +1,7 @@
 """The command line as a user meets it: outputs, files, exit statuses, errors that name the argument."""
 
 import json
+import math
 import os
 import re
 import subprocess
@@ -151,6 +152,28 @@ def test_wrong_arguments_are_named(capsys, arguments, said):
     assert said in err
 
 
+@pytest.mark.parametrize("unit", [1e3, 1.0, 1e-6])
+@pytest.mark.parametrize("method", ["moreau", "located"])
+def test_a_scene_has_as_many_steps_in_any_unit_of_time(capsys, tmp_path, unit, method):
+    file = tmp_path / "ball.py"
+    file.write_text(
+        "from lagrangian import LinearContacts, LinearSystem, Scene\n"
+        "def scene():\n"
+        f"    ball = LinearSystem(M=1.0, force=-9.81 / {unit}**2)\n"
+        f"    return Scene(ball, 1.0, 0.0, (0.0, 2.0 * {unit}), LinearContacts(G=1.0, restitution=0.5))\n"
+    )
+    status, out, _ = run(capsys, "simulate", file, "--method", method, "--json")
+    assert (status, json.loads(out)["steps"]) == (DONE, 20_000)
+
+
+def test_a_period_of_the_forcing_has_2000_steps_at_least(capsys):
+    arguments = "simulate", "impact-oscillator", "--t-end", 20.0, "--json"  # 20/pi periods of 2000 steps
+    _, out, _ = run(capsys, *arguments, "--set", "omega=8")
+    assert json.loads(out)["steps"] == math.ceil(20.0 / (2.0 * math.pi / 8.0) * 2000)
+    _, out, _ = run(capsys, *arguments, "--h", 0.01)
+    assert json.loads(out)["steps"] == 2000
+
+
 def test_a_motion_without_impacts_has_a_picture(capsys, tmp_path):
     picture = tmp_path / "flight.png"
     status, _, err = run(capsys, "simulate", "bouncing-ball", "--t-end", "0.1", "--picture", picture)
@@ -159,7 +182,7 @@ def test_a_motion_without_impacts_has_a_picture(capsys, tmp_path):
 
 
 def test_a_run_that_ends_early_is_a_failure(capsys, monkeypatch):
-    monkeypatch.setitem(cli.simulate.METHODS, "event-driven", lambda options: EventDriven(max_events=3))
+    monkeypatch.setitem(cli.simulate.METHODS, "event-driven", lambda *given: EventDriven(max_events=3))
     status, out, _ = run(capsys, "simulate", "cam-follower", "--method", "event-driven", "--json")
     assert status == FAILED
     assert json.loads(out)["status"] == "TOO_MANY_EVENTS"

@@ -136,7 +136,7 @@ def test_rounding_of_beads_that_one_of_them_presses_together_is_not_told():
 
 @pytest.mark.parametrize("form", [[], ["--json"]])
 def test_the_command_tells_and_exits_with_one(capsys, monkeypatch, form):
-    monkeypatch.setitem(cli.simulate.METHODS, "moreau", lambda options: Through(Moreau(1e-2)))
+    monkeypatch.setitem(cli.simulate.METHODS, "moreau", lambda *given: Through(Moreau(1e-2)))
     assert cli.main(["simulate", "bouncing-ball", "--t-end", "2", *form]) == 1
     out = capsys.readouterr().out
     assert "inside of its obstacle" in (json.loads(out)["message"] if form else out.split("\n")[0])
@@ -145,7 +145,7 @@ def test_the_command_tells_and_exits_with_one(capsys, monkeypatch, form):
 
 
 def test_the_comparison_tells_too(capsys, monkeypatch):
-    monkeypatch.setattr(cli.compare, "moreau", lambda options: Through(Moreau(1e-2), 1e-2))
+    monkeypatch.setattr(cli.compare, "moreau", lambda *given: Through(Moreau(1e-2), 1e-2))
     arguments = ["compare", "bouncing-ball", "--t-end", "2", "--no-pictures"]
     assert cli.main(arguments) == 1
     assert "inside of its obstacle" in capsys.readouterr().out

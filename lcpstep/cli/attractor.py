@@ -72,7 +72,8 @@ def add(commands: Any) -> None:
 
 def run_attractor(options: argparse.Namespace) -> int:
     """`lcpstep attractor`."""
-    scene, method = study_scene(options), method_of(options)
+    scene = study_scene(options)
+    method = method_of(options, scene)
     periodic(scene, "attractors")
     names = files(options, "attractors")
     number = checks.count("--starts", options.starts)
@@ -96,10 +97,10 @@ def run_attractor(options: argparse.Namespace) -> int:
     if options.compare and found.found:
         x = found.found[0].points[-1]
         with work_bar("by both methods"):
-            stepped = sample(scene, moreau(options), x, options.compare)
+            stepped = sample(scene, moreau(options, scene), x, options.compare)
             exact = sample(scene, event_driven(options), x, options.compare)
         compared = likeness(stepped, exact, seed=options.seed)
-        other = event_driven(options) if isinstance(method, Moreau) else moreau(options)
+        other = event_driven(options) if isinstance(method, Moreau) else moreau(options, scene)
         with work_bar("by the other method"):
             rows[method_words(other)] = search(other).found
     title = f"{scene_words(scene)}: attractors, {options.starts} random starts, section at phase {options.phase:g}"

@@ -71,13 +71,13 @@ def run_basin(options: argparse.Namespace) -> int:
     with work_bar("basins"):
         data = basins(
             scene, [position[0], velocity[0]], [position[1], velocity[1]], (n_q, n_v),
-            method=method_of(options), phase=options.phase, longest=options.longest, sample=options.sample,
+            method=method_of(options, scene), phase=options.phase, longest=options.longest, sample=options.sample,
             seed=options.seed, jobs=options.jobs, out=options.out / PARTS,
         )  # fmt: skip
     finish(
         options,
         data,
-        pictures.basins(data, title_of(scene, f"{n_q} x {n_v} cells", method_of(options))),
+        pictures.basins(data, title_of(scene, f"{n_q} x {n_v} cells", method_of(options, scene))),
         names,
     )
     for name, share, error in zip(*(data[k].values for k in ("name", "share", "share_error")), strict=True):

@@ -88,7 +88,7 @@ def run_bifurcation(options: argparse.Namespace) -> int:
     make = making(options, scene, options.parameter)
     values = np.linspace(low, high, options.points)
     keeps_parts(options)
-    data = _diagram(options, make, values, method_of(options), options.out / PARTS)
+    data = _diagram(options, make, values, method_of(options, scene), options.out / PARTS)
     title = _title(options, scene, low, high)
     if steps:
         figure = _compared(options, make, data, steps, title)
@@ -108,7 +108,7 @@ def _title(options: argparse.Namespace, scene: Scene, low: float, high: float) -
     )
     return (
         f"{scene.name}, {window}: {options.start} start, {options.drop} periods dropped, {options.keep} shown\n"
-        f"{method_words(method_of(options))}, section at phase {options.phase:g}"
+        f"{method_words(method_of(options, scene))}, section at phase {options.phase:g}"
     )
 
 

@@ -22,6 +22,8 @@ from lcpstep.files import replacing
 DONE, FAILED, USAGE = 0, 1, 2  # exit status; INTERRUPTED is another
 DPI = 150  # of pictures
 REFRESH = 0.1  # of a bar [s]
+# Steps where --h is not given, at least: in the span, in a period of the forcing
+PER_SPAN, PER_PERIOD = 20_000, 2000
 
 
 def scene_arguments(p: argparse.ArgumentParser) -> None:
@@ -43,7 +45,12 @@ def scene_arguments(p: argparse.ArgumentParser) -> None:
 
 def stepping_arguments(p: argparse.ArgumentParser) -> None:
     """Step, theta and complementarity solver."""
-    p.add_argument("--h", type=float, default=1e-4, help="step of the time-stepping [s] (1e-4)")
+    p.add_argument(
+        "--h",
+        type=float,
+        help=f"step of the time-stepping [s]; default: 1/{PER_SPAN} of the span, or 1/{PER_PERIOD} of the period of "
+        "the forcing where that is shorter",
+    )
     p.add_argument("--theta", type=float, default=0.5, help="0 explicit, 0.5 trapezoidal, 1 implicit (0.5)")
     p.add_argument("--lcp", default="lemke", help="complementarity solver: lemke, qp, qp:daqp, ... (lemke)")
 
@@ -149,15 +156,22 @@ def number(name: str, value: str, kind: type[float] = float) -> float:
         raise ValueError(f"--set: {name}: expected {expected}, got {value!r}") from None
 
 
-def moreau(options: argparse.Namespace) -> Moreau:
+def step(options: argparse.Namespace, scene: Scene) -> float:
+    """The step that the options give, or one that suits the times of the scene [s]."""
+    if options.h is not None:
+        return float(options.h)
+    return min((scene.t_span[1] - scene.t_span[0]) / PER_SPAN, scene.period / PER_PERIOD)
+
+
+def moreau(options: argparse.Namespace, scene: Scene) -> Moreau:
     """Time-stepping as the options say."""
-    return Moreau(h=options.h, theta=options.theta, lcp=options.lcp)
+    return Moreau(h=step(options, scene), theta=options.theta, lcp=options.lcp)
 
 
-def located(options: argparse.Namespace) -> Located:
+def located(options: argparse.Namespace, scene: Scene) -> Located:
     """Time-stepping with located impacts, as the options say."""
     order = options.order
-    return Located(h=options.h, order=int(order) if order.isdigit() else order)
+    return Located(h=step(options, scene), order=int(order) if order.isdigit() else order)
 
 
 def event_driven(options: argparse.Namespace) -> EventDriven:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian import Scene
 from lcpstep.accuracy.contest import Contest, Entrant, contest
 from lcpstep.cli.common import (
     DONE,
@@ -20,6 +21,7 @@ from lcpstep.cli.common import (
     save_figure,
     scene_arguments,
     scene_with_contacts,
+    step,
     stepping_arguments,
 )
 from lcpstep.errorbar.estimate import error_bar
@@ -80,7 +82,7 @@ def run_compare(options: argparse.Namespace) -> int:
         scene = scene_with_contacts(options, **({} if rpm is None else {"rpm": rpm}))
         title = scene.name if rpm is None else f"{rpm:g} rpm"
         with progress_bar(scene, title) as progress:
-            results.append((title, contest(scene, _methods(options), progress)))
+            results.append((title, contest(scene, _methods(options, scene), progress)))
     maps = {} if options.no_pictures or not cam or options.map_periods < 1 else _maps(options)
     pictures = [] if options.no_pictures else _draw(options, results, maps)
     if options.json:
@@ -102,9 +104,10 @@ def run_compare(options: argparse.Namespace) -> int:
     return DONE if all(run.status == Status.DONE and not run.doubt for run in runs) else FAILED
 
 
-def _methods(options: argparse.Namespace) -> list[Method]:
+def _methods(options: argparse.Namespace, scene: Scene) -> list[Method]:
     """The methods that are compared, at the step and the tolerance of the options."""
-    return [moreau(options), Located(options.h), Located(options.h, order=4), event_driven(options)]
+    h = step(options, scene)
+    return [moreau(options, scene), Located(h), Located(h, order=4), event_driven(options)]
 
 
 def _case(title: str, found: Contest, bars: bool) -> dict[str, Any]:
@@ -221,7 +224,7 @@ def _maps(options: argparse.Namespace) -> dict[str, Sections]:
     periods = options.map_periods
     found: dict[str, Sections] = {}
     methods: dict[str, Method] = {
-        "Located, order 2": Located(options.h),
+        "Located, order 2": Located(step(options, scene)),
         "event-driven": event_driven(options),
     }
     for name, method in methods.items():

@@ -54,7 +54,7 @@ def run_lyapunov(options: argparse.Namespace) -> int:
     """`lcpstep lyapunov`; what there is of it is printed where it is interrupted."""
     checks.count("--periods", options.periods)
     scene = study_scene(options)
-    P = PeriodMap(scene, method_of(options), options.phase)
+    P = PeriodMap(scene, method_of(options, scene), options.phase)
     x = scene.x0 if options.start is None else options.start
     latest: list[tuple[int, Lyapunov, NDArray[np.float64]]] = []
     options.wanted = options.periods

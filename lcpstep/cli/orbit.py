@@ -94,7 +94,8 @@ def run_orbit(options: argparse.Namespace) -> int:
         raise ValueError("--contact, --cyclic: they belong to --event")
     if options.periods is not None:
         checks.count("--periods", options.periods)
-    scene, method = study_scene(options), method_of(options)
+    scene = study_scene(options)
+    method = method_of(options, scene)
     if options.range is not None:
         vary(options)
         dataset.check_free(options.parameter, TAKEN)

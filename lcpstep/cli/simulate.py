@@ -36,13 +36,13 @@ from lcpstep.files import replacing
 from lcpstep.simulation import Method
 from lcpstep.trajectory import Kind, Status, Trajectory
 
-METHODS: dict[str, Callable[[argparse.Namespace], Method]] = {
-    "moreau": lambda options: replace(moreau(options), tolerance=options.tolerance),
-    "located": lambda options: replace(located(options), tolerance=options.tolerance),
-    "event-driven": event_driven,
+METHODS: dict[str, Callable[[argparse.Namespace, Any], Method]] = {
+    "moreau": lambda options, scene: replace(moreau(options, scene), tolerance=options.tolerance),
+    "located": lambda options, scene: replace(located(options, scene), tolerance=options.tolerance),
+    "event-driven": lambda options, scene: event_driven(options),
 }
 
-DEFAULTS: dict[str, Any] = {"h": 1e-4, "theta": 0.5, "lcp": "lemke", "order": "2"}
+DEFAULTS: dict[str, Any] = {"h": None, "theta": 0.5, "lcp": "lemke", "order": "2"}
 TAKES = {"moreau": ("h", "theta", "lcp"), "located": ("h", "order"), "event-driven": ()}
 SAVED = (".npz", ".nc", ".csv")
 DRAWN = (".png", ".pdf", ".svg")
@@ -95,7 +95,7 @@ def run_simulate(options: argparse.Namespace) -> int:
     if modes and options.energy:
         raise ValueError(f"--energy: {scene.name!r} has modes, and no masses and forces to balance")
     _refuse_what_does_not_apply(options)
-    method = METHODS[options.method](options)
+    method = METHODS[options.method](options, scene)
     options.out = _checked_name(options.out, options.overwrite)
     _check_pictures(options, scene)
     try:

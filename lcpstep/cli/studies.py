@@ -31,7 +31,7 @@ from lcpstep.simulation import Method
 
 CAM_BOX = ((0.0, -60.0), (1.5, 60.0))  # relative position [m] and velocity [m/s] of random starts
 TAKEN = {  # options of one method: their defaults, and whose they are
-    "h": (1e-4, "moreau"), "theta": (0.5, "moreau"), "lcp": ("lemke", "moreau"), "tolerance": (1e-12, "event-driven"),
+    "h": (None, "moreau"), "theta": (0.5, "moreau"), "lcp": ("lemke", "moreau"), "tolerance": (1e-12, "event-driven"),
 }  # fmt: skip
 PARTS = "parts"  # folder of an unfinished sweep
 
@@ -53,9 +53,9 @@ def study_arguments(p: argparse.ArgumentParser) -> None:
     p.add_argument("--overwrite", action="store_true", help="write over files of an earlier run")
 
 
-def method_of(options: argparse.Namespace) -> Method:
+def method_of(options: argparse.Namespace, scene: Any) -> Method:
     """The method that the options name."""
-    return moreau(options) if options.method == "moreau" else event_driven(options)
+    return moreau(options, scene) if options.method == "moreau" else event_driven(options)
 
 
 def _refuse_what_does_not_apply(options: argparse.Namespace) -> None:
