@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lagrangian.plain import in_order, python
+from lagrangian.plain import Unavailable, in_order, python
 
 Array = NDArray[np.float64]
 Callback = Callable[[float, Any, Any, Any, Any], Any]  # f(t, q, v, p, out), fills out, returns None
@@ -238,6 +238,8 @@ def evaluate(
 
     try:
         returned = python(f)(t, read_only(q), read_only(v), read_only(p), out)
+    except Unavailable:
+        raise
     except Exception as error:  # the user's code may raise anything; the message says whose it is
         sizes = f"q of shape {q.shape}, {words}{letter}" if words else f"q, {letter}"
         raise ValueError(

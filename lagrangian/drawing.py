@@ -17,6 +17,7 @@ import numpy as np
 
 from lagrangian import checks
 from lagrangian.checks import Array
+from lagrangian.plain import Unavailable
 
 Place = Sequence[float]  # x, y [m]
 Drawing = Callable[[float, Any], Sequence["Shape"]]
@@ -85,6 +86,8 @@ def drawn(drawing: Drawing, t: float, q: Array) -> list[Shape]:
     try:
         given = drawing(t, checks.read_only(q))
         shapes = list(given) if isinstance(given, Iterable) else None
+    except Unavailable:
+        raise
     except Exception as error:  # the user's code may raise anything; the message says whose it is
         raise ValueError(f"drawing: f(t, q) failed {where}: {checks.said(error)}") from error
     if shapes is None:

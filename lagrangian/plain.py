@@ -33,6 +33,10 @@ class Unchecked(TypeError):
         )
 
 
+class Unavailable(Exception):
+    """Raised in the place of a function that is not at hand: it has not failed, whatever it is asked for."""
+
+
 def source(f: Any) -> Any:
     """The Python function inside one that its user has compiled; f itself where it is no such function."""
     inside = getattr(f, "py_func", None)

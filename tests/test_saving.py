@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from lagrangian import Contacts, LinearContacts, LinearSystem, Scene, System, scenes
-from lcpstep import EventDriven, LcpStepError, Located, Moreau, load, simulate
+from lagrangian.drawing import Point
+from lcpstep import EventDriven, LcpStepError, Located, Moreau, continued, load, simulate
 from lcpstep.callbacks import functions
 from lcpstep.errors import DamagedFile, NotWritten
 from tests.processes import python
@@ -148,6 +149,20 @@ def test_own_functions_stay_at_home_and_the_scene_may_be_given(tmp_path):
     assert load(file, scene=scene).scene is scene
     again = load(back.save(tmp_path / "again.nc"), scene=scene)
     assert same(again, run)
+
+
+def drawn(t, q):
+    return [Point((q[0], 0.0))]
+
+
+@pytest.mark.parametrize("ask", [
+    lambda run: continued(run, t_end=2.0), lambda run: replace(run.scene, q0=0.4),
+    lambda run: run.animate().save("film.gif"),
+])  # fmt: skip
+def test_what_needs_functions_that_stayed_at_home_says_so_first(tmp_path, ask):
+    file = simulate(own(drawing=drawn), Moreau(0.1)).save(tmp_path / "own.nc")
+    with pytest.raises(LcpStepError, match=r"^tests\.test_saving:\w+: files carry no code that is run; give"):
+        ask(load(file))
 
 
 @pytest.mark.parametrize(("change", "named"), [

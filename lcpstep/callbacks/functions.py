@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 
+from lagrangian.plain import Unavailable
 from lcpstep.callbacks import fingerprint
 from lcpstep.errors import LcpStepError
 
@@ -29,6 +30,10 @@ from lcpstep.errors import LcpStepError
 READS = ("get", "items", "keys", "values", "index", "count", "copy")
 HOLDERS = (list, tuple, set, frozenset, Mapping, np.ndarray)
 OWN = ("lagrangian.scenes.", "lagrangian.profiles")  # where functions are taken from by their name alone
+
+
+class MissingFunction(LcpStepError, Unavailable):
+    """What is raised by a function that did not come with its file."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +53,7 @@ class Absent:
 
     def __call__(self, *arguments: Any) -> Any:
         """LcpStepError: what to do."""
-        raise LcpStepError(f"{self.name}: {self.reason}")
+        raise MissingFunction(f"{self.name}: {self.reason}")
 
 
 def require(f: Any) -> None:
