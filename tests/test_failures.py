@@ -35,6 +35,10 @@ def negative_mass(t, q, v, p, out):
     out[0, 0] = 1.0 if t < 0.3 else -1.0
 
 
+def infinite_mass(t, q, v, p, out):
+    out[0, 0] = 1.0 if t < 0.3 else math.inf
+
+
 def weight(t, q, v, p, out):
     out[0] = -8.0
 
@@ -89,6 +93,7 @@ CULPRITS = [
     ("system.mass", System(1, bad_mass, weight), FLOOR),
     ("system.mass", System(1, singular_mass, weight), FLOOR),
     ("system.mass", System(1, negative_mass, weight), FLOOR),
+    ("system.mass", System(1, infinite_mass, weight), FLOOR),
     ("contacts.motion", FALLING, LinearContacts(G=1.0, restitution=0.5, motion=bad_motion)),
     ("contacts.motion", FALLING, SPEED),
     ("contacts.gap", FALLING, Contacts(1, bad_gap, jacobian)),
@@ -97,7 +102,7 @@ CULPRITS = [
 ]
 IDS = [
     "force", "infinite force", "force without contact", "force of a general system", "frame", "mass",
-    "singular mass", "negative mass", "motion", "speed of the motion", "gap", "jacobian", "gap_t",
+    "singular mass", "negative mass", "infinite mass", "motion", "speed of the motion", "gap", "jacobian", "gap_t",
 ]  # fmt: skip
 METHODS = [
     pytest.param(Moreau(1e-2), id="moreau"),

@@ -69,11 +69,11 @@ def invert_matrix(A: Doubles, pivots: Indices, scale: float, column: Doubles, ou
 
 
 def positive_definite(A: Doubles, n: int) -> bool:
-    """Whether a symmetric A is positive definite: Cholesky's method, A = L L^T, in the lower half of A."""
+    """Whether a symmetric A is finite and positive definite: Cholesky's method, A = L L^T, in its lower half."""
     for k in range(n):
         for j in range(k):
             A[k * n + k] -= A[k * n + j] * A[k * n + j]
-        if not A[k * n + k] > 0.0:
+        if not (A[k * n + k] > 0.0 and A[k * n + k] - A[k * n + k] == 0.0):
             return False
         A[k * n + k] = sqrt(A[k * n + k])
         for i in range(k + 1, n):
