@@ -50,6 +50,29 @@ def test_steps_that_see_the_motion_from_outside_need_no_blow(method, more):
     assert run.doubt == ""
 
 
+@pytest.mark.parametrize("more", [{}, {"corners": (0.0, 0.5), "period": 1.0}], ids=str)
+@pytest.mark.parametrize("r", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("method", [EventDriven(), Located(0.05), Located(0.05, "exact")], ids=str)
+def test_a_single_coordinate_is_seen_from_outside_by_flights_too(method, r, more):
+    """At rest on the frame, in flight as it turns about, and between kept states: as on an obstacle that moves."""
+    system, span, times = LinearSystem(2.0, force=-3.0), (0.0, 2.7), np.linspace(0.0, 2.7, 271)
+    carried = Scene(
+        replace(system, frame=to_and_fro), 0.2, 0.0, span, LinearContacts(1.0, restitution=r), **more
+    )
+    moving = LinearContacts(1.0, restitution=r, motion=to_and_fro)
+    run = simulate(carried, method)
+    true = simulate(Scene(system, 0.2, 1.0, span, moving, **more), EventDriven())
+    assert run.doubt == ""
+    np.testing.assert_allclose(run.impacts.time, true.impacts.time, rtol=1e-12)
+    for t in (times, run.t):
+        c = np.zeros((len(t), 1, 3))
+        for k in range(len(t)):
+            to_and_fro(t[k], None, None, None, c[k])
+        q, v = run.at(t)
+        absolute = q + c[:, :, 0], v + c[:, :, 1]
+        np.testing.assert_allclose(absolute, true.at(t), rtol=0.0, atol=1e-12)
+
+
 def test_runs_that_a_callback_makes_change_nothing():
     def force(t, q, v, p, out):
         simulate(scene(shaken, (0.0, 0.1)), Moreau(0.05))

@@ -39,6 +39,12 @@ def keep_event(s: Flight) -> None:
         keep(s, s.now)
 
 
+def keep_turned(s: Flight) -> None:
+    """Keep the state s.q, s.v after a corner in the place of that before it, if this is kept: see `evaluate`."""
+    if s.record.take_back(s.now, s.impulse):
+        keep(s, s.now)
+
+
 @cython.ccall
 def evaluate(s: Flight, kept: Any, times: Any, row: Any, q: Any, v: Any) -> None:
     """States at times, from the kept states before them, each that of its row; called from Python."""

@@ -12,7 +12,7 @@ import cython
 
 from lcpstep.events.codes import ACCUMULATION, IMPACT, RELEASE, STAYS_CLOSED
 from lcpstep.events.flight.contact import CLOSED, FREE, NONE, ON_THE_SURFACE, UNSEEN
-from lcpstep.events.flight.keep import keep_event
+from lcpstep.events.flight.keep import keep_event, keep_turned
 from lcpstep.events.flight.motion import Flight, free, leave_from, on_obstacle
 from lcpstep.events.flight.rest import alpha_at
 from lcpstep.kernels.sudden import JUMP
@@ -159,6 +159,7 @@ def turn_corner(s: Flight) -> None:
             land(s, t, u, jump)
         else:
             go_on(s, t, s.g0, u + jump)
+            keep_turned(s)
         return
     if strikes:
         free(s, t - s.t0)
@@ -168,6 +169,7 @@ def turn_corner(s: Flight) -> None:
     s.find_corners(t)
     _, s.u, s.alpha = free(s, t - s.t0)
     s.peak = max(s.peak, abs(s.alpha))
+    keep_turned(s)
 
 
 def land(s: Flight, t: float, u: float, jump: float) -> None:

@@ -4,10 +4,10 @@ Taylor: y'' = M^-1 (F(t) - C y' - K y) under constant and harmonic forces gives 
 
     (k+1) (k+2) T_{k+2} = M^-1 (F_k - C (k+1) T_{k+1} - K T_k),
 
-exact to rounding where the piece is short against the periods. In a moving frame y = q + c(t). Runge-Kutta: the
-classical step of order four, and the quintic through position, velocity and acceleration at both of its ends. Closed
-contacts enter by their forces, lambda = -(G M^-1 G^T)^-1 (G a + bias). Sources: E. Hairer, S. Norsett, G. Wanner,
-Solving Ordinary Differential Equations I, sections I.8 and II.1; G. Osorio, eq. 3.5.
+exact to rounding where the piece is short against the periods. Runge-Kutta: the classical step of order four, and the
+quintic through position, velocity and acceleration at both of its ends. Closed contacts enter by their forces, lambda
+= -(G M^-1 G^T)^-1 (G a + bias). Sources: E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I,
+sections I.8 and II.1; G. Osorio, eq. 3.5.
 """
 
 from __future__ import annotations
@@ -152,11 +152,6 @@ def taylor(m: Model, plan: Plan, w: Work, z: Polynomial, t: float) -> bool:
     z.scale, z.degree = 1.0, 1
     copy(z.T, w.q, w.n_q)
     copy(after(z.T, n), w.v, w.n_q)
-    if m.frame.given:
-        m.frame.fill(t, w.q, w.v, m.frame_now)
-        for i in range(n):
-            z.T[i] += m.frame_now[3 * i]
-            z.T[n + i] += m.frame_now[3 * i + 1]
     if on_surface(plan, w):
         return True
     if w.closed_now > 0:
@@ -241,11 +236,6 @@ def state_at(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float) -> None:
             v = v * s + q
             q = q * s + z.T[k * n + i]
         z.q[i], z.v[i] = q, v / z.scale
-    if plan.exact and m.frame.given:
-        m.frame.fill(z.t + tau, w.q, w.v, m.frame_now)
-        for i in range(n):
-            z.q[i] -= m.frame_now[3 * i]
-            z.v[i] -= m.frame_now[3 * i + 1]
 
 
 def surface_state(m: Model, w: Work, z: Polynomial, t: float) -> None:

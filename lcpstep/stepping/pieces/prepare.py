@@ -31,14 +31,14 @@ PER_PERIOD = 16  # pieces of exact motion per period of a moving frame or obstac
 NO_GAP = 1e-3  # of a tolerance
 
 
-def carried_where_possible(m: Model, trapezoidal: bool) -> Model:
+def carried_where_possible(m: Model, order: int | str) -> Model:
     """The model, from now on in the coordinates in which a moving frame rests, where its steps allow that.
 
     There the frame puts no force on the system; the obstacles move with it instead, and where they are is known
     exactly at any time, while the force -(M c'' + C c' + K c) within a step is not. On the cam-follower that is worth
     a factor of twenty in the error.
     """
-    m.carried = bool(trapezoidal and m.linear and m.flat and m.frame.given)
+    m.carried = bool(order != 4 and m.linear and m.flat and m.frame.given)
     return m
 
 

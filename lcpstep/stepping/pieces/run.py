@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Scene
+from lcpstep.doubts.jolts import jolts_of
 from lcpstep.errors import SimulationError
 from lcpstep.gaps import no_way_out
 from lcpstep.kernels.looks import all_finite
@@ -40,7 +41,7 @@ class LocatedRun(StepRun):
     """One run: the loop with its state."""
 
     def __init__(self, method: Located, scene: Scene, kept: Kept) -> None:
-        self.model = carried_where_possible(model(scene), method.order == 2)
+        self.model = carried_where_possible(model(scene), method.order)
         p = plan(scene, self.model, method, method.h)
         self.work = start(scene, self.model, p)
         steps = kept.of_steps(number(scene.t_span, method.h)) if method.tolerance is None else None
@@ -159,8 +160,10 @@ class LocatedRun(StepRun):
         """States at any time: from the kept ones where these tell, by another run where they do not.
 
         Steps by a tolerance are as long as what moves allows at their ends: in between an obstacle goes its own way.
+        Where the velocity of a frame jumps in a step, what the frame carries has a kink there.
         """
-        if self.method.order == 2 and (self.method.tolerance is None or self.plan.plain):
+        told = self.method.order == 2 and (self.method.tolerance is None or self.plan.plain)
+        if told and not (self.model.carried and len(jolts_of(self.scene))):
             return Bent(s.t, s.q, s.v, self.kept.all, s.mode)
         return Again(self.method, self.scene, *self.state)
 
