@@ -287,6 +287,14 @@ def upright(t, q, v, p, out):
     out[0, 0], out[0, 1] = 0.0, 1.0
 
 
+def spoilt_gap(t, q, v, p, out):
+    out[0] = q[1] if t <= 0.5 else math.nan
+
+
+def spoilt_floor(t, q, v, p, out):
+    out[0, 0], out[0, 1], out[0, 2] = 0.0 if t <= 0.5 else math.nan, 0.0, 0.0
+
+
 def spoilt_lift(t, q, v, p, out):
     out[0] = q[1] - t * t if t <= 0.5 else math.nan
 
@@ -299,6 +307,8 @@ ROUGH = Coulomb(mu=0.1, tangent=along)
 AT_REST = {
     "contacts.jacobian of what slides": {"contacts": Contacts(1, level, spoilt_level, friction=ROUGH)},
     "contacts.jacobian of what rests": {"contacts": Contacts(1, level, spoilt_level)},
+    "contacts.gap": {"contacts": Contacts(1, spoilt_gap, upright)},
+    "contacts.motion": {"contacts": LinearContacts([[0.0, 1.0]], motion=spoilt_floor)},
     "friction.tangent": {
         "contacts": Contacts(1, level, upright, friction=Coulomb(mu=0.1, tangent=spoilt_along))
     },

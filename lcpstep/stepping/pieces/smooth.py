@@ -128,7 +128,7 @@ def gap_accelerations(w: Work, a: Doubles) -> None:
 
 
 def measure(m: Model, w: Work, t: float) -> None:
-    """Gaps and gap velocities at the base of the piece; zero where a contact is closed."""
+    """Gaps and gap velocities at the base of the piece; zero where a contact is closed, and they are numbers."""
     gaps(m, t, w.q, w.v, w.gap)
     gap_rates(m, within(w, t), w.q, w.v, w.G, w.gap_t)
     for c in range(w.n_c):
@@ -137,7 +137,8 @@ def measure(m: Model, w: Work, t: float) -> None:
         else:
             w.velocity[c] = product(w.G, w.v, c, w.n_q) + w.gap_t[c]
         if w.status[c] == CLOSED:
-            w.gap[c] = w.velocity[c] = 0.0
+            w.gap[c] -= w.gap[c]
+            w.velocity[c] -= w.velocity[c]
 
 
 def look_along(w: Work, tau: float) -> None:
