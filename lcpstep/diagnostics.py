@@ -19,12 +19,14 @@ time-integration methods for nonsmooth elastodynamics with contact, ZAMM 96 (201
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import isfinite
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
+from lcpstep.gauss import gauss
 from lcpstep.kernels import states
 from lcpstep.model import model, tangent_model
 from lcpstep.stepping.sparse.equations import Equations
@@ -96,6 +98,10 @@ def energy(trajectory: Trajectory) -> Energy:
     -------
     Energy; its `created` is empty where no contact created energy and no belt did work
 
+    Raises
+    ------
+    ValueError   no state of the run was kept, or the potential gives no number at one that was
+
     Examples
     --------
     >>> from lagrangian import scenes
@@ -162,10 +168,11 @@ def _states(scene: Scene, t: Array, q: Array, v: Array) -> tuple[Array, Array]:
     kinetic, _ = _system_rates(scene, t, q, v)
     potential = np.zeros(len(t))
     if system.potential is not None:
-        out = np.zeros(1)
-        for k in range(len(t)):
-            system.potential(t[k], q[k], v[k], np.array(scene.p), out)
-            potential[k] = out[0]
+        potential.fill(np.nan)
+        for k, at in enumerate(zip(t, q, v, [np.array(scene.p)] * len(t), strict=True)):
+            system.potential(*at, potential[k : k + 1])
+            if not isfinite(potential[k]):  # which says so
+                checks.evaluate("system.potential", system.potential, at, (1,))
     return kinetic, potential
 
 
@@ -180,9 +187,9 @@ def _powers(m: Trajectory) -> tuple[Array, Array]:
         means = [0.5 * (x[1:] + x[:-1]) for x in (m.t, m.q, m.v)]
         return _rates(m, means[0], means[1], means[2], h, ends=True)
     work, damping = np.zeros(len(h)), np.zeros(len(h))
-    for node, weight in zip(*np.polynomial.legendre.leggauss(NODES), strict=True):
-        t = m.t[:-1] + 0.5 * (1.0 + node) * h
-        parts = _rates(m, t, *m.at(t), 0.5 * weight * h, ends=False)
+    for node, weight in zip(*gauss(NODES), strict=True):
+        t = m.t[:-1] + node * h
+        parts = _rates(m, t, *m.at(t), weight * h, ends=False)
         work, damping = work + parts[0], damping + parts[1]
     return work, damping
 
@@ -209,13 +216,9 @@ def _rates(m: Trajectory, t: Array, q: Array, v: Array, h: Array, *, ends: bool)
         now, before = (_system_rates(scene, t + d, q + d * v, v)[0] for d in (near, -near))
         return h * (power + (now - before) / (2.0 * near)), np.zeros(len(t))
     e = _equations(scene)
-    if ends:
-        F = _forces(e, m.t, m.q, m.v)
-        F = 0.5 * (F[1:] + F[:-1])
-    else:
-        F = _forces(e, t, q, v)
-    if e.harmonic:
-        F = F - e.terms[0]
+    F = _forces(e, m.t, m.q, m.v) if ends else _forces(e, t, q, v)
+    F = 0.5 * (F[1:] + F[:-1]) if ends else F
+    F = F - e.terms[0] if e.harmonic else F
     return h * np.einsum("ij,ij->i", v, F), h * np.einsum("ij,ij->i", v, (e.C @ v.T).T)
 
 
@@ -294,6 +297,4 @@ def _own_rates(
         belts = [slip.at(x, scene.n_c) for x in t.tolist()] if isinstance(slip, Harmonic) else slip
         return out + np.asarray(belts) + ((T @ v.T).T if moved else 0.0)
     m = (tangent_model if tangents else model)(scene)
-    return states.own_rates(
-        m, np.ascontiguousarray(t), np.ascontiguousarray(q), np.ascontiguousarray(v), moved
-    )
+    return states.own_rates(m, *map(np.ascontiguousarray, (t, q, v)), moved)

@@ -42,6 +42,17 @@ CLOSED = {
 }
 
 
+@pytest.mark.parametrize("never", [False, True])
+def test_a_potential_that_gives_no_number_is_named_with_time_and_state(never):
+    def potential(t, q, v, p, out):
+        if t < 0.5 or not never:
+            out[0] = 1.0 - math.cos(q[0]) if t < 0.5 else math.nan
+
+    scene = Scene(System(1, 1.0, pendulum_force, potential=potential), 1.0, 0.0, (0.0, 1.0))
+    with pytest.raises(ValueError, match=r"^system\.potential: .*not filled at t = 0\.5, q = \["):
+        energy(simulate(scene, Moreau(0.125)))
+
+
 @pytest.mark.parametrize("name", CLOSED)
 def test_the_balance_of_the_trapezoidal_rule_closes_to_rounding(name):
     run = simulate(CLOSED[name], Moreau(2e-3))
