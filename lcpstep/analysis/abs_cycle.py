@@ -25,6 +25,7 @@ from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.many import End, Follower
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
+from lcpstep.gauss import gauss
 from lcpstep.simulation import simulate
 from lcpstep.trajectory import Status
 
@@ -198,10 +199,10 @@ def stopping(run: HybridTrajectory) -> dict[str, Any]:
     stands = [float(s.time) for s in run.switches if s.target == "standing"]
     locked = [float(s.time) for s in run.switches if s.target.endswith("locked")]
     end = stands[0] if stands else float(run.t[-1])
-    nodes, weights = np.polynomial.legendre.leggauss(6)
+    nodes, weights = gauss(6)
     distance = 0.0
     for a, b in pairwise(run.pieces.t[run.pieces.t <= end]):
-        distance += 0.5 * (b - a) * float(weights @ run.at(0.5 * (a + b) + 0.5 * (b - a) * nodes)[:, 2])
+        distance += (b - a) * float(weights @ run.at(a + (b - a) * nodes)[:, 2])
     return {
         "parameters": dict(run.scene.parameters),
         "end": "stands" if stands else f"still in state {run.mode[-1]}",

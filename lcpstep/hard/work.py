@@ -17,6 +17,7 @@ from lcpstep.events.codes import OPEN, SLIDES, STICKS
 from lcpstep.events.contacts import point
 from lcpstep.events.contacts.run import start
 from lcpstep.events.contacts.smooth import Smooth
+from lcpstep.gauss import gauss
 from lcpstep.trajectory import Kind, Trajectory
 
 NODES = 6  # of Gauss' rule
@@ -40,8 +41,8 @@ def unbalanced(run: Trajectory, total: Any = None) -> float:
 
 def _work(s: Any, run: Trajectory, k: int) -> float:
     """Work of friction from one kept state to the next."""
-    nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    t = run.t[k] + 0.5 * (1.0 + nodes) * (run.t[k + 1] - run.t[k])
+    nodes, weights = gauss(NODES)
+    t = run.t[k] + nodes * (run.t[k + 1] - run.t[k])
     states = np.hstack(run.at(t))
     n, n_c, n_j = run.scene.n_q, run.scene.n_c, run.scene.n_j
     closed = run.impulse[k + 1] > 0.0
@@ -55,7 +56,7 @@ def _work(s: Any, run: Trajectory, k: int) -> float:
     if not point.hold(s, float(t[len(t) // 2]), middle, modes, np.sign(slip)):
         return 0.0
     total = 0.0
-    for time, x, weight in zip(t, states, 0.5 * weights * (run.t[k + 1] - run.t[k]), strict=True):
+    for time, x, weight in zip(t, states, weights * (run.t[k + 1] - run.t[k]), strict=True):
         x = np.ascontiguousarray(x)
         R, _, _, _ = point.rows(s, float(time), x)
         total += weight * float(point.forces(s, float(time), x)[n_j + n_c :] @ (R @ x[n:])[n_j + n_c :])

@@ -21,6 +21,7 @@ from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.hybrid.roots import NONE
 from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
 from lcpstep.events.rows.equations import acceleration_of, list_gaps, size_of, velocity_of
+from lcpstep.kernels.four_nodes import INNER, NODE_0, NODE_1, NODE_2, NODE_3, OUTER
 from lcpstep.kernels.quadratic import first_zero, highest
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import largest
@@ -29,14 +30,6 @@ from lcpstep.pointers import abs, after, inf, max, min, nan
 # In place of a landing: there is none within the step; it is NONE where the gap itself is to be looked at
 NEVER = -2.0
 
-# Gauss' nodes on [0, 1], and weights, the same for the outer and for the inner two
-NODE_0, NODE_1, NODE_2, NODE_3 = (
-    0.06943184420297371,
-    0.33000947820757187,
-    0.6699905217924281,
-    0.9305681557970263,
-)
-OUTER, INNER = 0.17392742256872692, 0.32607257743127307
 # What the quadrature leaves of the first power that it does not integrate, x^8: (4!)^4 / (9 (8!)^2)
 REMAINDER = 331776.0 / (9.0 * 1625702400.0)
 LONGER = 3.0  # how much longer than under constant acceleration a hop may last

@@ -129,7 +129,7 @@ def first_action(s: Motion, k: int) -> tuple[float, bool]:
 def locate(s: Motion, h: float) -> float:
     """Time from now at which the guard found acts: secants on steps of that length, of which the last one is left."""
     t, most = s.now, s.t_end - s.now
-    s.culprit, s.rate, s.missed = s.acting, s.slope / h, nan
+    s.culprit, s.secant, s.missed = s.acting, s.slope / h, nan
     tau = s.meet(t, min(s.place * h, most), most, FAR * h, REFINEMENTS)
     if abs(guard(s.m, s.mode, s.acting, t + tau, s.y_new) - s.event_at) > JUMP * s.slope:
         tau = min(bisect(s, s.acting, h, s.place), most)

@@ -30,7 +30,7 @@ class Motion(RungeKutta):
     acting, place                the guard found to act within a step, or -1; where, as a fraction of it
     slope, curvature             of that guard there, per step
     event_at, was_armed          its value there; whether it was below its band before
-    rate, missed, tried          slope of that guard; its value, less `event_at`, after the step last tried; its size
+    secant, missed, tried        slope of it as told; its value, less `event_at`, after the step last tried; its size
     armed, band : (guards,)      whether each has been below its band since the mode began; how well it is known
     states : (samples, n)        of a step
     row, switches                rows and lines of the log written
@@ -69,7 +69,7 @@ class Motion(RungeKutta):
         self.now, self.last_switch, self.mode, self.begun, self.culprit = t, -inf, mode, False, -1
         self.acting, self.place, self.slope, self.curvature = -1, 2.0, 0.0, 0.0
         self.event_at, self.was_armed, self.brief = 0.0, False, 0.0
-        self.rate = self.missed = self.tried = 0.0
+        self.secant = self.missed = self.tried = 0.0
         self.steps, self.events, self.stalled, self.row, self.switches = 0, 0, 0, 0, 0
 
     def start(self, t: float, x: Any, mode: int) -> None:
@@ -102,9 +102,9 @@ class Motion(RungeKutta):
         """By a secant of the guard that acts, with the slope that the last change has met where it did."""
         g, before = guard(self.m, self.mode, self.culprit, t + tau, self.y_new) - self.event_at, self.missed
         if g * before < 0.0 or abs(g) < 0.5 * abs(before):
-            self.rate = (g - before) / (tau - self.tried)
+            self.secant = (g - before) / (tau - self.tried)
         self.missed, self.tried = g, tau
-        longer = -g / self.rate if self.rate > 0.0 else 0.0
+        longer = -g / self.secant if self.secant > 0.0 else 0.0
         return longer if abs(longer) > RESOLUTION * tau else 0.0
 
     def keep(self, h: float) -> None:
