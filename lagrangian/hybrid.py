@@ -37,7 +37,7 @@ from lagrangian.checks import Array, Callback
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.mechanical import check_contacts, check_rates, mass_of
 from lagrangian.modes import Function, Guard, Mode, Surface
-from lagrangian.parameters import values
+from lagrangian.parameters import plain, values
 from lagrangian.pickling import Pickled
 from lagrangian.plain import in_order
 
@@ -186,8 +186,8 @@ class HybridScene(Pickled):
     def __post_init__(self) -> None:
         if not isinstance(self.system, HybridSystem):
             raise TypeError(f"system: expected a lagrangian.HybridSystem, got {self.system!r}")
+        object.__setattr__(self, "parameters", plain(self.parameters))
         p = values(self.p, self.parameters)
-        object.__setattr__(self, "parameters", checks.ReadOnly(self.parameters))
         object.__setattr__(self, "x0", checks.array("x0", self.x0, (self.system.n_x,)))
         object.__setattr__(self, "p", p)
         if self.mode not in self.system.names:

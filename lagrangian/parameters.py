@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lagrangian.checks import Array, vector
+from lagrangian.checks import Array, ReadOnly, vector
 
 
 class Values(np.ndarray[Any, np.dtype[np.float64]]):
@@ -24,7 +24,20 @@ def values(p: ArrayLike | None, parameters: Mapping[str, Any]) -> Array:
         raise ValueError(
             f"parameters: expected p=None beside new ones, for p to be theirs: it has {p.tolist()} of others"
         )
-    return vector("p", named if p is None else p).view(Values)
+    return (vector("parameters", named) if p is None else vector("p", p)).view(Values)
+
+
+def plain(parameters: Mapping[str, Any]) -> ReadOnly:
+    """Names and values, read-only; single values of NumPy's as those of Python, which files hold.
+
+    TypeError where they are none.
+    """
+    if not isinstance(parameters, Mapping):
+        raise TypeError(f"parameters: expected names and values, got {parameters!r}")
+    numpys = np.generic, np.ndarray
+    return ReadOnly(
+        {name: x.item() if isinstance(x, numpys) and x.size == 1 else x for name, x in parameters.items()}
+    )
 
 
 def numbers(parameters: Mapping[str, Any]) -> list[Any]:

@@ -16,7 +16,7 @@ from lagrangian.drawing import Drawing
 from lagrangian.joints import Joints, LinearJoints
 from lagrangian.joints import state as joint_state
 from lagrangian.labels import rate_label
-from lagrangian.parameters import values
+from lagrangian.parameters import plain, values
 from lagrangian.pickling import Pickled
 from lagrangian.relations import check_derivatives, is_large
 from lagrangian.system import Harmonic, LinearSystem, System
@@ -76,8 +76,8 @@ class Scene(Pickled):
     def __post_init__(self) -> None:
         self._check_parts()
         n_q = self.system.n_q
+        object.__setattr__(self, "parameters", plain(self.parameters))
         p = values(self.p, self.parameters)
-        object.__setattr__(self, "parameters", checks.ReadOnly(self.parameters))
         corners = np.sort(checks.vector("corners", self.corners))
         object.__setattr__(self, "q0", checks.array("q0", self.q0, (n_q,)))
         object.__setattr__(self, "v0", checks.array("v0", self.v0, (n_q,)))
@@ -151,8 +151,6 @@ class Scene(Pickled):
         return self.contacts.state(float(t), *state, np.array(self.p))
 
     def _check_parts(self) -> None:
-        if not isinstance(self.parameters, Mapping):
-            raise TypeError(f"parameters: expected names and values, got {self.parameters!r}")
         checks.instance("system", self.system, LinearSystem, System)
         checks.instance("name", self.name, str)
         if self.contacts is not None:

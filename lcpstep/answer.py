@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lagrangian import checks
+
 Array = NDArray[np.float64]
 
 
@@ -22,12 +24,7 @@ def asked(t: ArrayLike, known: Array) -> Array:
     if len(known) == 0:
         raise ValueError("t: no state of this run was kept")
     start, end = known[0], known[-1]
-    try:
-        times = np.atleast_1d(np.asarray(t, dtype=float))
-    except (TypeError, ValueError):
-        raise ValueError(f"t: expected real numbers, got {t!r}") from None
-    if times.ndim != 1:
-        raise ValueError(f"t: expected a number or times in one dimension, got shape {times.shape}")
+    times = checks.vector("t", t)
     outside = ~((times >= start) & (times <= end))
     if np.any(outside):
         raise ValueError(f"t: expected times within [{start}, {end}] s, got {times[outside][0]}")

@@ -1,5 +1,6 @@
 """What is no number, no system, no method and no solver is refused by name before any step."""
 
+import json
 import math
 import re
 from dataclasses import replace
@@ -10,7 +11,7 @@ import pytest
 import qpsolvers
 
 from lagrangian import LinearContacts, LinearSystem, Scene, scenes
-from lcpstep import EventDriven, LcpStepError, Located, MissingSolver, Moreau, UnknownName, simulate
+from lcpstep import EventDriven, LcpStepError, Located, MissingSolver, Moreau, UnknownName, load, simulate
 from lcpstep.lcp.qp import known_solvers
 from tests.falling import FALLING, FLOOR, run
 
@@ -61,6 +62,18 @@ def test_what_stands_for_something_else_is_refused_by_name():
         LinearContacts(G=1.0, friction=0.3)
     with pytest.raises(TypeError, match=r"^projected: expected a bool"):
         Moreau(0.1, projected="no")
+
+
+@pytest.mark.parametrize(
+    "value", [np.int64(3), np.float32(0.5), np.bool_(True), np.array(2.0), np.array([2])]
+)
+def test_parameters_are_numbers_of_python_s_however_they_are_given(value, tmp_path):
+    """Those of numpy's went through the run, and could not be saved after it."""
+    scene = Scene(FALLING, 1.0, 0.0, (0.0, 1.0), parameters={"c": value})
+    assert type(scene.parameters["c"]) in (int, float, bool)
+    run = simulate(scene, Moreau(0.1))
+    assert load(run.save(tmp_path / "run.nc")).scene.parameters == {"c": value.item()}
+    assert f'"c": {json.dumps(value.item())}' in run.to_xarray().attrs["parameters"]
 
 
 @pytest.mark.parametrize("q0", [np.array(1), np.array([1]), [1], np.float32(1.0), np.ma.masked_array([1.0])])
