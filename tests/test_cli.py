@@ -152,6 +152,39 @@ def test_wrong_arguments_are_named(capsys, arguments, said):
     assert said in err
 
 
+def test_every_set_counts_and_none_twice(capsys):
+    """The last --set had replaced those before, and --set rpm=700 had run beside the name of another speed."""
+    _, out, _ = run(
+        capsys, "simulate", "bouncing-ball", "--h", 0.1, "--set", "restitution=0.5", "--set", "h0=2", "--json"
+    )
+    parameters = json.loads(out)["parameters"]
+    assert (parameters["restitution"], parameters["h0"]) == (0.5, 2.0)
+    for words, said in (
+        ("simulate bouncing-ball --set h0=2 --set h0=3", "h0 is set twice, to 2 and 3"),
+        ("simulate bouncing-ball --set t_end=2 --t-end 3", "t_end is set by the command itself here, or by"),
+        ("compare cam-follower --rpm 358 --set rpm=700", "rpm is set by the command itself here, or by"),
+        ("map logistic --set r=3 r=3.5", "r is set twice"),
+    ):
+        status, _, err = run(capsys, *words.split())
+        assert (status, err.startswith(f"lcpstep: --set: {said}")) == (USAGE, True), err
+
+
+def test_a_folder_in_the_place_of_a_file_is_told_before_the_run(capsys, tmp_path, monkeypatch):
+    monkeypatch.setattr(cli.simulate, "simulate", lambda *a, **b: pytest.fail("it ran"))
+    for option, name in (("--out", "x.nc"), ("--picture", "x.png"), ("--film", "x.gif")):
+        (tmp_path / name).mkdir()
+        status, _, err = run(
+            capsys,
+            "simulate",
+            "pendulum-stop",
+            option,
+            tmp_path / name,
+            *(["--overwrite"] * (name == "x.nc")),
+        )
+        assert status == USAGE
+        assert f"{option}: {tmp_path / name} is a folder" in err
+
+
 @pytest.mark.parametrize("unit", [1e3, 1.0, 1e-6])
 @pytest.mark.parametrize("method", ["moreau", "located"])
 def test_a_scene_has_as_many_steps_in_any_unit_of_time(capsys, tmp_path, unit, method):

@@ -37,6 +37,7 @@ def scene_arguments(p: argparse.ArgumentParser) -> None:
     p.add_argument(
         "--set",
         nargs="+",
+        action="extend",
         default=[],
         metavar="NAME=VALUE",
         help="parameters of the scene, see: lcpstep scenes",
@@ -72,15 +73,27 @@ def scene_of(options: argparse.Namespace, **more: Any) -> Any:
     for name in more:
         if name not in known:
             raise UnknownName(f"parameter of {options.scene}", name, known)
-    values = dict(more)
+    given = settings(options, known, options.scene)
+    for name in (*more, *(["t_end"] if options.t_end is not None else [])):
+        if name in given:
+            raise ValueError(f"--set: {name} is set by the command itself here, or by another option")
+    values = more | {name: read(name, value, known[name]) for name, value in given.items()}
+    return made_scene(options.scene, values, options.t_end)
+
+
+def settings(options: argparse.Namespace, known: Mapping[str, Any], of: str) -> dict[str, str]:
+    """Values that --set gives as texts, each of a known parameter, and once."""
+    values: dict[str, str] = {}
     for setting in options.set:
         name, equals, value = setting.partition("=")
         if not equals:
             raise ValueError(f"--set: expected NAME=VALUE, got {setting!r}")
         if name not in known:
-            raise UnknownName(f"parameter of {options.scene}", name, known)
-        values[name] = read(name, value, known[name])
-    return made_scene(options.scene, values, options.t_end)
+            raise UnknownName(f"parameter of {of}", name, known)
+        if name in values:
+            raise ValueError(f"--set: {name} is set twice, to {values[name]} and {value}")
+        values[name] = value
+    return values
 
 
 def parameters_of(scene: str) -> dict[str, Any]:
@@ -108,8 +121,8 @@ def arguments_of(options: argparse.Namespace, scene: Any) -> dict[str, Any]:
     """What the scene that the options name was made with: all parameters that have a value."""
     known = parameters_of(options.scene)
     if own.is_file(options.scene):
-        settings = dict(setting.split("=", 1) for setting in options.set)
-        given = {name: read(name, value, known[name]) for name, value in settings.items()}
+        texts = settings(options, known, options.scene)
+        given = {name: read(name, value, known[name]) for name, value in texts.items()}
         return {name: x for name, x in known.items() if isinstance(x, (int, float, str))} | given
     return {name: x for name, x in scene.parameters.items() if name in known}
 

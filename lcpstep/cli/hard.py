@@ -23,9 +23,21 @@ def add(commands: Any) -> None:
         "answers: passed, failed (how far off), or refused. Exit status 1 where a check failed.",
         epilog="Example: lcpstep hard --scene bouncing-ball elastic-gas --method event-driven",
     )
-    p.add_argument("--scene", nargs="+", default=[], metavar="SCENE", help="only these (see: lcpstep scenes)")
     p.add_argument(
-        "--method", nargs="+", default=[], metavar="METHOD", help=f"only these of: {', '.join(METHODS)}"
+        "--scene",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="SCENE",
+        help="only these (see: lcpstep scenes)",
+    )
+    p.add_argument(
+        "--method",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="METHOD",
+        help=f"only these of: {', '.join(METHODS)}",
     )
     p.add_argument("--full", action="store_true", help="the heavy checks too; takes minutes")
     p.add_argument(

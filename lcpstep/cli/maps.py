@@ -15,9 +15,8 @@ from lcpstep.analysis.fixed_points import PeriodicPoint
 from lcpstep.analysis.map_border import border_point
 from lcpstep.analysis.map_diagram import STARTS, Escaped, exponent, map_diagram, periodic_points, settled
 from lcpstep.analysis.returns import TOLERANCE, settled_time
-from lcpstep.cli.common import DONE, number
+from lcpstep.cli.common import DONE, number, settings
 from lcpstep.cli.studies import PARTS, files, finish, parts_bar, stopped
-from lcpstep.errors import UnknownName
 from lcpstep.maps.formulas import MAPS, Family, named, piecewise_linear
 
 OWN = "piecewise-linear"
@@ -42,7 +41,9 @@ def add(commands: Any) -> None:
         epilog="Example: lcpstep map logistic --parameter r --range 2.8 4 --out out",
     )
     p.add_argument("map", metavar="MAP", help=f"one of: {', '.join(MAPS)}, {OWN}; or FILE.py")
-    p.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", help="parameters of the map")
+    p.add_argument(
+        "--set", nargs="+", action="extend", default=[], metavar="NAME=VALUE", help="parameters of the map"
+    )
     p.add_argument(
         "--x0", type=float, nargs="+", metavar="X", help="where orbits start; default: the map's own"
     )
@@ -105,15 +106,8 @@ def family_of(options: argparse.Namespace) -> Family:
             if value is not None:
                 raise ValueError(f"--{name}: only {OWN} takes matrices")
         family = named(options.map)
-    values = {}
-    for setting in options.set:
-        name, equals, value = setting.partition("=")
-        if not equals:
-            raise ValueError(f"--set: expected NAME=VALUE, got {setting!r}")
-        if name not in family.parameters:
-            raise UnknownName(f"parameter of {family.name}", name, family.parameters)
-        values[name] = number(name, value)
-    return family.with_values(values)
+    given = settings(options, family.parameters, family.name)
+    return family.with_values({name: number(name, value) for name, value in given.items()})
 
 
 def _matrices(given: dict[str, Any]) -> dict[str, Any]:

@@ -139,6 +139,8 @@ def _checked_name(file: Path | None, overwrite: bool) -> Path | None:
     file = file if file.suffix else file.with_name(f"{file.name}.npz")
     if file.suffix not in SAVED:
         raise ValueError(f"--out: expected a name that ends in {', '.join(SAVED)}, got {str(file)!r}")
+    if file.is_dir():
+        raise IsADirectoryError(f"--out: {file} is a folder")
     if file.exists() and not overwrite:
         raise FileExistsError(f"--out: {file} exists already; --overwrite replaces it")
     return file
@@ -153,6 +155,8 @@ def _check_pictures(options: argparse.Namespace, scene: Any) -> None:
             raise ValueError(
                 f"--{name}: expected a name that ends in {', '.join(endings)}, got {str(file)!r}"
             )
+        if file.is_dir():
+            raise IsADirectoryError(f"--{name}: {file} is a folder")
         folder = next(path for path in file.absolute().parents if path.exists())
         if not folder.is_dir():
             raise ValueError(f"--{name}: {folder} is no folder")
