@@ -106,22 +106,23 @@ class ParameterStudy:
         except tomllib.TOMLDecodeError as error:
             raise ValueError(f"{name}: no TOML: {error}") from None
         _known(name, "key", given, TOP)
-        if not isinstance(given.get("scene"), str):
-            wrong = given.get("scene")
-            raise ValueError(f'{name}: scene: expected a name, as scene = "bouncing-ball", got {wrong!r}')
+        _checked(f"{name}: scene", given.get("scene"), str, 'a name, as scene = "bouncing-ball"')
         sections = {part: _table(name, given, part) for part in ("method", "parameters", "sweep", "outputs")}
         _known(f"{name}: [outputs]", "key", sections["outputs"], OUTPUTS)
+        for key in sections["outputs"].keys() - {"measures"}:
+            _checked(f"{name}: [outputs]: {key}", sections["outputs"][key], str, "the name of a file")
         measures = sections["outputs"].get("measures", list(ORDINARY))
         if not isinstance(measures, list) or not measures:
             raise ValueError(f"{name}: [outputs]: measures: expected a list of names, got {measures!r}")
         _known(f"{name}: [outputs]", "measure", measures, MEASURES | ERRORS)
+        fixed = {key: _single(f"{name}: [parameters]: {key}", x) for key, x in sections["parameters"].items()}
         sweep = {key: _values(f"{name}: [sweep]: {key}", x) for key, x in sections["sweep"].items()}
         t_end = None if "t_end" not in given else checks.positive(f"{name}: t_end", given["t_end"])
-        twice = sorted(set(sweep) & set(sections["parameters"]))
+        twice = sorted(set(sweep) & set(fixed))
         if twice:
             raise ValueError(f"{name}: {', '.join(twice)}: given in [parameters] and in [sweep]")
         return cls(
-            text, given["scene"], _method(name, sections["method"]), t_end, sections["parameters"], sweep,
+            text, given["scene"], _method(name, sections["method"]), t_end, fixed, sweep,
             sections["outputs"] | {"measures": measures},
         )  # fmt: skip
 
@@ -233,16 +234,24 @@ def _measured(name: str, run: Trajectory) -> Any:
 
 def _known(where: str, what: str, given: Any, known: Any) -> None:
     """UnknownName for the first name that is not known."""
-    for key in given:
-        if key not in known:
-            raise UnknownName(f"{what} of {where}:", key, known)
+    if unknown := [key for key in given if key not in known]:
+        raise UnknownName(f"{what} of {where}:", unknown[0], known)
 
 
 def _table(name: str, given: Mapping[str, Any], part: str) -> dict[str, Any]:
-    found = given.get(part, {})
-    if not isinstance(found, dict):
-        raise ValueError(f"{name}: {part}: expected a table, written under a line [{part}], got {found!r}")
-    return found
+    return _checked(f"{name}: {part}", given.get(part, {}), dict, f"a table, written under a line [{part}]")
+
+
+def _single(where: str, given: Any) -> Any:
+    """The value of a parameter."""
+    return _checked(where, given, (bool, int, float, str), "a number, true, false or a text")
+
+
+def _checked(where: str, given: Any, kinds: Any, words: str) -> Any:
+    """What is given; ValueError unless it is of these kinds, in words."""
+    if not isinstance(given, kinds):
+        raise ValueError(f"{where}: expected {words}, got {given!r}")
+    return given
 
 
 def _method(name: str, given: Mapping[str, Any]) -> Method:
@@ -260,7 +269,7 @@ def _method(name: str, given: Mapping[str, Any]) -> Method:
 def _values(where: str, given: Any) -> list[Any]:
     """Values of a swept parameter: a list, or a range {from, to, points, scale}."""
     if isinstance(given, list) and given:
-        return given
+        return [_single(where, x) for x in given]
     if isinstance(given, dict):
         _known(where, "key", given, RANGE)
         missing = [key for key in RANGE[:3] if key not in given]
@@ -274,8 +283,7 @@ def _values(where: str, given: Any) -> list[Any]:
         ends = [checks.number(f"{where}: {key}", given[key]) for key in ("from", "to")]
         if scale == "log" and min(ends) <= 0.0:
             raise ValueError(f"{where}: expected positive ends of a logarithmic range, got {ends}")
-        values: list[Any] = SCALES[scale](*ends, checks.count(f"{where}: points", given["points"])).tolist()
-        return values
+        return list(SCALES[scale](*ends, checks.count(f"{where}: points", given["points"])).tolist())
     raise ValueError(f"{where}: expected a list of values, or {{from, to, points}}, got {given!r}")
 
 
@@ -285,4 +293,8 @@ def read_file(file: str | Path) -> ParameterStudy:
         raise FileNotFoundError(
             f"file: there is no file {str(file)!r}; docs/parameter-studies.md has one to start from"
         )
-    return ParameterStudy.read(Path(file).read_text(), Path(file).name)
+    try:
+        text = Path(file).read_text(encoding="utf-8-sig")  # with a mark of the encoding before it, or without
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{Path(file).name}: no TOML: {error}") from None
+    return ParameterStudy.read(text, Path(file).name)

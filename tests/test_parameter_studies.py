@@ -129,6 +129,9 @@ def test_a_study_without_a_sweep_is_one_run():
         (("points", "point"), "did you mean 'points'"),
         (("points = 4", "points = 4, scale = 'logs'"), "did you mean 'log'"),
         (("[0.25, 0.5]", "0.5"), r"\[sweep\]: restitution: expected a list of values"),
+        (("[0.25, 0.5]", "[[0.25]]"), r"\[sweep\]: restitution: expected a number, true, false or a text"),
+        (("g = 8.0", "g = [8.0]"), r"\[parameters\]: g: expected a number, true, false or a text"),
+        (("measures", "table = 3\nmeasures"), r"\[outputs\]: table: expected the name of a file, got 3"),
         (("points = 4", "points = 0"), "points: expected a positive integer"),
         (("from = 0.25, ", ""), "from: missing"),
         (("t_end = 0.6", "t_end = -1"), "t_end: expected a positive number"),
@@ -140,6 +143,16 @@ def test_a_study_without_a_sweep_is_one_run():
 def test_what_is_not_understood_is_named(change, said):
     with pytest.raises((UnknownName, ValueError), match=said):
         ParameterStudy.read(TEXT.replace(*change))
+
+
+def test_the_encoding_of_a_file_is_no_matter_of_the_machine(folder, capsys):
+    file = folder / "study.toml"
+    text = '# Stoßzahl\nscene = "bouncing-ball"\nt_end = 0.1\n'
+    file.write_bytes(text.encode("utf-8-sig"))  # as an editor of Windows writes it
+    assert run(capsys, "run", "study.toml")[0] == DONE
+    file.write_bytes(text.encode("latin-1"))
+    status, _, err = run(capsys, "run", "study.toml")
+    assert (status, err.startswith("lcpstep: study.toml: no TOML: 'utf-8'")) == (USAGE, True)
 
 
 def test_parameters_that_the_scene_does_not_have(folder, capsys):
