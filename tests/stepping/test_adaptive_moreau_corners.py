@@ -40,6 +40,27 @@ def test_a_table_takes_along_what_lies_on_it(system, h, tolerance, theta):
     assert AT in m.t
 
 
+def rectified(t, q, v, p, out):
+    """|sin(pi t / p[0])| / 10."""
+    w = np.pi / p[0]
+    sign = 1.0 if t < p[0] else -1.0
+    out[0, 0] = 0.1 * sign * np.sin(w * t)
+    out[0, 1], out[0, 2] = 0.1 * sign * w * np.cos(w * t), -0.1 * sign * w**2 * np.sin(w * t)
+
+
+@pytest.mark.parametrize("place", [1.0, 1.54])
+def test_what_steps_have_left_open_below_a_body_is_not_opened_by_its_blow(place):
+    """The gap above a table that bends lies within the tolerance; it is no error of the step from the corner on."""
+    contacts = LinearContacts(1.0, 0.0, motion=rectified)
+    scene = Scene(
+        LinearSystem(1.0, force=-WEIGHT), 0.0, 0.1 * np.pi / place, (0.0, 2.0), contacts, p=[place],
+        corners=[place],
+    )  # fmt: skip
+    m = simulate(scene, Moreau(0.02, tolerance=1e-4))
+    assert m.status is Status.DONE
+    np.testing.assert_allclose(m.q[:, 0], 0.1 * abs(np.sin(np.pi * m.t / place)), rtol=0, atol=1e-5)
+
+
 @pytest.mark.parametrize(("before", "later"), [(0.7, 0.0), (0.0, -0.7)])
 @pytest.mark.parametrize(("h", "tolerance", "theta"), [(1.0, 1e-4, 0.5), (0.1, 1e-3, 1.0)])
 def test_what_lies_on_a_table_that_stops_or_drops_is_left_behind(before, later, h, tolerance, theta):

@@ -241,7 +241,7 @@ class Attempts(Control):
                 # normals that are nearly parallel, or other units, make of a slow approach a jump of velocities
                 closes = abs(self.s.u[i] - self.part_u[i]) > slow or (thrown and self.s.closed[i] == 1)
                 struck = struck or closes
-                if not closes:
+                if not closes and not self.blow:  # gaps begin on their obstacles there
                     gained = max(gained, g - max(0.0, self.part_g[i]))
             else:
                 gained = max(gained, dip(self.part_g[i], self.part_u[i], self.s.u[i], h))
