@@ -165,3 +165,21 @@ def test_a_force_that_begins_at_zero_at_time_zero():
     m = simulate(d.scene(), Located(8.0 * d.h, 4, tolerance=1e-6))
     assert m.status is Status.DONE
     np.testing.assert_allclose(m.q[-1], simulate(d.scene(), EventDriven()).q[-1], atol=1e-8)
+
+
+def dragged(t, q, v, p, out):
+    out[0] = -9.0 - 0.5 * v[0]
+
+
+def growing(t, q, v, p, out):
+    out[0, 0] = 1.0 + 0.3 * np.sin(q[0])
+
+
+@pytest.mark.parametrize("mass", [[[1.0]], growing], ids=["constant", "varying"])
+def test_an_impact_of_a_general_system_is_found_to_the_smallest_tolerances(mass):
+    """What its forces do in ever shorter steps is not hidden by rounding of the jump."""
+    ball = System(1, mass, dragged)
+    scene = Scene(ball, 0.3, -1.0, (0.0, 0.5), LinearContacts(1.0, 0.0, 0.8))
+    m = simulate(scene, Moreau(0.01, tolerance=1e-7))
+    assert m.status == Status.DONE, m.message
+    assert m.q[-1, 0] == pytest.approx(simulate(scene, EventDriven()).q[-1, 0], abs=1.3e-7)

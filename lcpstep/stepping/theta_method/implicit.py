@@ -36,22 +36,13 @@ def linearise(m: Model, plan: Plan, s: State, t: float, t_next: float) -> bool:
         copy(s.J, s.M_start, n * n)
         if not positive_definite(s.J, n):
             return False
-    shift = DIFFERENCE * largest(s.next_v, least_speed(s, plan.h), n)
-    for j in range(n if fresh and not given else 0, -1, -1):  # the last one at next_v itself
-        copy(s.try_v, s.next_v, n)
-        if j > 0:
-            s.try_v[j - 1] += shift
-        residual(m, plan, s, t_next, s.try_v)
-        for i in range(n if j > 0 else 0):
-            s.A[i * n + j - 1] = s.R[i] / shift
+    residual(m, plan, s, t_next)
     copy(s.next_force, s.try_f, n)
     if fresh:
         if given:
             given_jacobian(m, plan, s, t_next)
         else:
-            for i in range(n):
-                for j in range(n):
-                    s.A[i * n + j] -= s.R[i] / shift
+            differenced_jacobian(m, plan, s, t_next)
         if not factorise(s.A, s.pivots, n):
             return False
     solve(s.A, s.pivots, s.R, n)
@@ -69,19 +60,38 @@ def least_speed(s: State, h: float) -> float:
     return least
 
 
-def residual(m: Model, plan: Plan, s: State, t_next: float, v: Doubles) -> None:
-    """R(v) into s.R; leaves q(v), M_theta and f(t+h, q(v), v) in the work space."""
-    n, theta, h = s.n_q, plan.theta, plan.h
+def residual(m: Model, plan: Plan, s: State, t_next: float) -> None:
+    """R(v) at next_v into s.R; leaves q(v), M_theta and f(t+h, q(v), v) in the work space."""
+    n, theta = s.n_q, plan.theta
+    forces(m, plan, s, t_next, s.next_v)
+    mass(m, t_next, s.try_q, s.next_v, s.M)
     for i in range(n):
-        s.try_q[i] = s.q[i] + h * (theta * v[i] + (1.0 - theta) * s.v[i])
-    mass(m, t_next, s.try_q, v, s.M)
-    total_force(m, t_next, s.try_q, v, s.try_f)
-    s.forces += 1
-    for i in range(n):
-        s.R[i] = -h * (theta * s.try_f[i] + (1.0 - theta) * s.force[i])
+        s.R[i] = -plan.h * (theta * s.try_f[i] + (1.0 - theta) * s.force[i])
         for j in range(n):
             s.M[i * n + j] = theta * s.M[i * n + j] + (1.0 - theta) * s.M_start[i * n + j]
-            s.R[i] += s.M[i * n + j] * (v[j] - s.v[j])
+            s.R[i] += s.M[i * n + j] * (s.next_v[j] - s.v[j])
+
+
+def forces(m: Model, plan: Plan, s: State, t_next: float, v: Doubles) -> None:
+    """q(v) and f(t+h, q(v), v) into the work space."""
+    for i in range(s.n_q):
+        s.try_q[i] = s.q[i] + plan.h * (plan.theta * v[i] + (1.0 - plan.theta) * s.v[i])
+    total_force(m, t_next, s.try_q, v, s.try_f)
+    s.forces += 1
+
+
+def differenced_jacobian(m: Model, plan: Plan, s: State, t_next: float) -> None:
+    """A = M_theta - h theta df/dv along q(v), the change of M left out.
+
+    M as it is, for after an impact differences of M (v - v_i) are rounding of the jump, however short the step.
+    """
+    n, shift = s.n_q, DIFFERENCE * largest(s.next_v, least_speed(s, plan.h), s.n_q)
+    for j in range(n):
+        copy(s.try_v, s.next_v, n)
+        s.try_v[j] += shift
+        forces(m, plan, s, t_next, s.try_v)
+        for i in range(n):
+            s.A[i * n + j] = s.M[i * n + j] - plan.h * plan.theta * (s.try_f[i] - s.next_force[i]) / shift
 
 
 def given_jacobian(m: Model, plan: Plan, s: State, t_next: float) -> None:
