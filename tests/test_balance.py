@@ -242,3 +242,31 @@ def test_corners_are_known_where_states_are_kept_late(order):
     h = 1.0 / 60.0
     scene = Scene(System(1, one, pushes), 0.0, 0.0, (0.0, 5.0), corners=[0.0345, 0.0355], period=0.05)
     assert simulate(scene, Located(h, order), keep=np.arange(280, 300) * h).doubt == ""
+
+
+def lifted(t, q, v, p, out):
+    """Presses with 2 N, then lifts with 10 N."""
+    out[0] = 10.0 if t >= 0.3575 else -2.0
+
+
+@pytest.mark.parametrize("order", [2, 4])
+def test_what_is_lifted_off_its_floor_at_a_corner_gains_what_the_force_gives(order):
+    """Forces at both ends of the step in which it leaves tell nothing: it lay still up to the corner."""
+    ground = LinearContacts(1.0, 0.0)
+    scene = Scene(System(1, unit(1), lifted), 0.0, 0.0, (0.0, 0.36), ground, corners=[0.3575])
+    m = simulate(scene, Located(2e-3, order))
+    assert m.v[-1, 0] == pytest.approx(10.0 * 0.0025, abs=1e-12)
+    assert m.doubt == ""
+
+
+def pulls(t, q, v, p, out):
+    out[0] = -10.0 + p[0] * math.sin(p[1] * t)
+
+
+def test_what_steps_gain_on_a_floor_is_told_beside_the_energy_of_the_whole_run():
+    """Moreau's press back what opens already, by energies of order h^2: here a millionth of that of the fall."""
+    ground, p = LinearContacts(1.0, 0.0, 0.5), (10.831284939745217, 11.1)
+    assert (
+        simulate(Scene(System(1, unit(1), pulls), 1.0, 0.0, (0.0, 3.0), ground, p=p), Moreau(5e-4)).doubt
+        == ""
+    )

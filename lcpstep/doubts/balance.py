@@ -79,17 +79,19 @@ def _surplus(run: Trajectory, m: Model, h: float, k: Any, times: float) -> tuple
 
 
 def _gain_at_impacts(run: Trajectory, m: Model, h: float) -> tuple[float, float]:
-    """Energy without a source in the steps with an impact that speed up most, and what these turn over."""
+    """Energy without a source in the steps with an impact that speed up most; what they turn over, and the run's T."""
     contacts = run.scene.contacts
     if contacts is None or contacts.friction is not None or driven(contacts) or m.mass.given:
         return 0.0, 0.0
-    if len(run.impacts) == 0:
-        return 0.0, 0.0
     k = _struck(run)
-    k = k[run.t[k + 1] - run.t[k] < (1.0 + NEAR) * h]
+    k = k[(run.t[k + 1] - run.t[k] < (1.0 + NEAR) * h) & ~_over_a_corner(run, h, k)]
+    if len(k) == 0:
+        return 0.0, 0.0
     speed = np.sum(run.v[k + 1] ** 2, axis=1) - np.sum(run.v[k] ** 2, axis=1)
-    gained, work, kinetic = _between(run, m, h, k[np.argsort(speed)[-SUDDEN:]], True)
-    return gained, kinetic + work
+    gained, work, _ = _between(run, m, h, k[np.argsort(speed)[-SUDDEN:]], True)
+    fastest = run.v[np.argmax(np.sum(run.v**2, axis=1))]
+    M = run.scene.system.M if isinstance(run.scene.system, LinearSystem) else run.scene.system.mass
+    return gained, 0.5 * float(fastest @ (M @ fastest)) + work
 
 
 def _between(run: Trajectory, m: Model, h: float, k: Any, struck: bool) -> tuple[float, float, float]:
@@ -106,6 +108,12 @@ def _between(run: Trajectory, m: Model, h: float, k: Any, struck: bool) -> tuple
     if kinetic < (STILL * h) ** 2 * pushed + (ROUNDING / h) * (ROUNDING / h) * placed:
         return 0.0, 0.0, 0.0
     return gained, work, kinetic
+
+
+def _over_a_corner(run: Trajectory, h: float, k: Any) -> Any:
+    """Whether the steps from states k have a corner of the scene, so that forces at both ends tell nothing."""
+    near = NEAR * h
+    return corners_before(run.scene, run.t[k] - near) != corners_before(run.scene, run.t[k + 1] + near)
 
 
 def driven(rows: Any) -> bool:
@@ -128,8 +136,7 @@ def _smooth(run: Trajectory, h: float, k: Any) -> Any:
         last = np.searchsorted(events, t[k], side="right")
         after = (last > 0) & (events[last - 1] == t[k]) & (way < h)
         fits |= after & (last == np.searchsorted(events, t[k + 1] + near))
-    if hasattr(run.method, "order"):  # it stops at corners, and forces at both ends tell nothing
-        fits &= corners_before(run.scene, t[k] - near) == corners_before(run.scene, t[k + 1] + near)
+    fits &= ~_over_a_corner(run, h, k)
     contacts = run.scene.contacts
     if contacts is not None and (contacts.friction is not None or driven(contacts)):
         fits &= ~run.impulse[k + 1].any(axis=1)
