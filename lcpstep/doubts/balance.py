@@ -79,7 +79,7 @@ def _surplus(run: Trajectory, m: Model, h: float, k: Any, times: float) -> tuple
 
 
 def _gain_at_impacts(run: Trajectory, m: Model, h: float) -> tuple[float, float]:
-    """Energy without a source in the steps with an impact that speed up most; what they turn over, and the run's T."""
+    """Energy without a source in the steps with an impact that speed up most; their work, and the run's largest T."""
     contacts = run.scene.contacts
     if contacts is None or contacts.friction is not None or driven(contacts) or m.mass.given:
         return 0.0, 0.0
