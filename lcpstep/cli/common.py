@@ -23,7 +23,7 @@ DONE, FAILED, USAGE = 0, 1, 2  # exit status; INTERRUPTED is another
 DPI = 150  # of pictures
 REFRESH = 0.1  # of a bar [s]
 # Steps where --h is not given, at least: in the span, in a period of the forcing
-PER_SPAN, PER_PERIOD = 20_000, 2000
+PER_SPAN, PER_PERIOD = 20_000, 500
 
 
 def scene_arguments(p: argparse.ArgumentParser) -> None:

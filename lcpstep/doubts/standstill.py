@@ -18,10 +18,8 @@ from numpy.typing import NDArray
 STEPS = 20_000  # in a row
 # Steps and events of any kind: from so many on it is looked at, each time they have doubled
 IMPACTS = 200_000
-GROWTH, NEAR = (
-    1.25,
-    0.01,
-)  # of the kinetic energy meanwhile; of the time to their limit: an end so near is beyond it
+GROWTH = 1.25  # of the kinetic energy meanwhile
+NEAR = 0.01  # of the time to the limit of impacts: an end so near is beyond it
 PER_IMPACT = 100  # steps that the search for one may take
 # Of the span, or of what so many of the longest steps do: what they take the time on by at least, or crawl
 LEAST, CRAWL = 1e-6, 0.1
