@@ -212,12 +212,10 @@ def _task(
     targets: Targets | None,
 ) -> Task:
     d = scene.n_x
-    x = np.array(starts, dtype=float, order="C", ndmin=2)
-    if x.ndim != 2 or x.shape[1] != d or len(x) == 0:
+    x = checks.matrix("starts", starts).copy()
+    if x.shape[1] != d:
         names = ", ".join(label.split(" [")[0] for label in scene.labels)
         raise ValueError(f"starts: expected states ({names}) of shape (m, {d}), got shape {np.shape(starts)}")
-    if not np.all(np.isfinite(x)):
-        raise ValueError("starts: expected finite numbers")
     m, kept = len(x), n - drop
     none = Targets(np.zeros((0, d)), np.zeros(0), np.ones(d))
     to = none if targets is None else targets

@@ -161,6 +161,9 @@ def test_starts_inside_of_the_obstacle_are_marked():
         ({"phase": -0.1}, "phase"),
         ({"starts": [[0.0, 0.0, 0.0]]}, "starts: expected states"),
         ({"starts": [[math.nan, 0.0]]}, "starts: expected finite"),
+        ({"starts": iter([[0.0, 0.0]])}, "starts: expected real numbers"),
+        ({"starts": [["0.0", "0.0"]]}, "starts: expected real numbers"),
+        ({"starts": []}, "starts: expected a matrix"),
         ({"scene": scenes.bouncing_ball()}, "has no period"),
     ],
 )
