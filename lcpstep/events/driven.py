@@ -99,11 +99,11 @@ class EventDriven:
         elif isinstance(scene.system, LinearSystem):
             m = model(scene)
             if scene.n_q == 1 and scene.n_c <= 1 and scene.n_j == 0:
-                from lcpstep.events.flight.oscillator import oscillator_of
+                from lcpstep.events.flight.oscillator import is_lost, oscillator_of
                 from lcpstep.events.flight.run import ClosedForm
 
                 o = oscillator_of(m)
-                if o is not None:
+                if o is not None and not is_lost(o, m, scene.t_span[1] - scene.t_span[0]):
                     return ClosedForm(self, scene, kept, m, o).finish(progress)
             from lcpstep.events.parabolas.run import ParabolicRun, is_constant
 

@@ -107,6 +107,16 @@ def test_resonance_is_solved_one_way_or_the_other(c, off):
         assert q == pytest.approx(exact, abs=max(1e-10, 1e-15 / max(off, 1e-6)))
 
 
+@pytest.mark.parametrize("span", [1e-4, 10.0])
+@pytest.mark.parametrize("omega", [1.0, 7.3e-5, 1e-9, 1e-100, 1e-320])
+def test_a_slow_force_moves_a_free_body_as_a_constant_one_does(omega, span):
+    """The motion was lost in a steady oscillation of F / (m omega^2): of 50 m in 10 s nothing at 1e-9 rad/s."""
+    scene = Scene(LinearSystem(M=1.0, force=Harmonic(cosine=1.0, omega=omega)), 0.0, 0.0, (0.0, span))
+    half = 0.5 * mpf(omega)
+    exact = float(span**2 / mpf(2) * (mp.sin(half * span) / (half * span)) ** 2)
+    assert simulate(scene, EventDriven()).q[-1, 0] == pytest.approx(exact, rel=1e-11)
+
+
 def test_a_free_particle_moves_on_a_parabola_exactly():
     o = oscillator(2.0, 0.0, 0.0, -8.0, 0.0, 0.0, 0.0)
     for tau in (0.0, 0.25, 1.0, 3.0):

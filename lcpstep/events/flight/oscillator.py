@@ -27,7 +27,7 @@ C1, C2, C3, C4, C5, C6, C7 = 1.0 / 12, 1.0 / 30, 1.0 / 56, 1.0 / 90, 1.0 / 132, 
 TERMS = 16  # of the series; the first neglected one is below rounding
 NEGLIGIBLE = 1e-18  # two terms in a row, of a sum that is near one
 NOTHING = 1e-100  # an exponent that is zero for every purpose
-NEAR_RESONANCE = 1e-6  # relative; the steady oscillation is lost in its own size beyond it
+NEAR_RESONANCE = 1e-6  # relative; the motion is lost in the size of the steady oscillation beyond it
 
 
 # 1 / k and 1 / (k (k + 1))
@@ -61,12 +61,19 @@ def oscillator(
     if omega == 0.0 or (cosine == 0.0 and sine == 0.0):
         return Oscillator(delta, w2, (constant + (cosine if omega == 0.0 else 0.0)) / m, 0.0, 0.0, 0.0)
     a, b = w2 - omega * omega, 2.0 * delta * omega
-    if hypot(a, b) < NEAR_RESONANCE * (abs(w2) + omega * omega):
-        return None
     D = m * (a * a + b * b)
+    if D == 0.0 or hypot(a, b) < NEAR_RESONANCE * (abs(w2) + omega * omega):
+        return None
     return Oscillator(
         delta, w2, constant / m, (cosine * a - sine * b) / D, (cosine * b + sine * a) / D, omega
     )
+
+
+@cython.ccall
+def is_lost(o: Oscillator, m: Model, span: float) -> bool:
+    """Whether what a force moves in the span is lost in the steady oscillation: it is slow, the spring not strong."""
+    way = hypot(m.cosine[0], m.sine[0]) / m.M[0] * span * span
+    return hypot(o.X, o.Y) * NEAR_RESONANCE > way
 
 
 def envelope(delta: float, w2: float, x: float, dx: float) -> float:
