@@ -291,16 +291,6 @@ def labels(name: str, values: Any, n: int) -> tuple[str, ...]:
     return given
 
 
-def in_words(scene: Any, parts: list[str]) -> str:
-    """A scene on one line: its kind, name, what it has, its span, and its parameters."""
-    start, end = scene.t_span
-    values = [
-        f"{name}={x:g}" if isinstance(x, float) else f"{name}={x!r}" for name, x in scene.parameters.items()
-    ]
-    words = [repr(scene.name), *parts, f"t = {start:g} .. {end:g} s", *values]
-    return f"{type(scene).__name__}({', '.join(words)})"
-
-
 def shown(x: NDArray[Any]) -> str:
     """The numbers of an array for a message: all of them, or the first few and how many."""
     if x.size <= MANY:

@@ -37,7 +37,7 @@ from lagrangian.checks import Array, Callback
 from lagrangian.contacts import Contacts, LinearContacts
 from lagrangian.mechanical import check_contacts, check_rates, mass_of
 from lagrangian.modes import Function, Guard, Mode, Surface
-from lagrangian.parameters import plain, values
+from lagrangian.parameters import in_words, plain, values
 from lagrangian.pickling import Pickled
 from lagrangian.plain import in_order
 
@@ -208,7 +208,7 @@ class HybridScene(Pickled):
     def __repr__(self) -> str:
         modes = f"modes {', '.join(self.system.names)}"
         met = [f"{self.n_c} contact{'s' * (self.n_c > 1)}"] if self.n_c else []
-        return checks.in_words(self, [f"{self.n_x} states", *met, modes, f"starts in {self.mode}"])
+        return in_words(self, [f"{self.n_x} states", *met, modes, f"starts in {self.mode}"])
 
     @property
     def n_x(self) -> int:

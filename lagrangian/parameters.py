@@ -43,3 +43,13 @@ def plain(parameters: Mapping[str, Any]) -> ReadOnly:
 def numbers(parameters: Mapping[str, Any]) -> list[Any]:
     """The values of parameters that are no text; those of switches as 0 and 1."""
     return [float(x) if isinstance(x, bool) else x for x in parameters.values() if not isinstance(x, str)]
+
+
+def in_words(scene: Any, parts: list[str]) -> str:
+    """A scene on one line: its kind, name, what it has, its span, and its parameters."""
+    start, end = scene.t_span
+    values = [
+        f"{name}={x:g}" if isinstance(x, float) else f"{name}={x!r}" for name, x in scene.parameters.items()
+    ]
+    words = [repr(scene.name), *parts, f"t = {start:g} .. {end:g} s", *values]
+    return f"{type(scene).__name__}({', '.join(words)})"

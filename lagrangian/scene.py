@@ -16,7 +16,7 @@ from lagrangian.drawing import Drawing
 from lagrangian.joints import Joints, LinearJoints
 from lagrangian.joints import state as joint_state
 from lagrangian.labels import rate_label
-from lagrangian.parameters import plain, values
+from lagrangian.parameters import in_words, plain, values
 from lagrangian.pickling import Pickled
 from lagrangian.relations import check_derivatives, is_large
 from lagrangian.system import Harmonic, LinearSystem, System
@@ -106,7 +106,7 @@ class Scene(Pickled):
         parts += [
             f"{n} {what}{'s' * (n > 1)}" for n, what in ((self.n_c, "contact"), (self.n_j, "joint")) if n
         ]
-        return checks.in_words(self, parts)
+        return in_words(self, parts)
 
     @property
     def n_q(self) -> int:
