@@ -12,6 +12,7 @@ import pytest
 
 from lagrangian import Contacts, LinearContacts, Scene, System, scenes
 from lcpstep import EventDriven, Located, Moreau, SimulationInterrupted, Status, simulate, simulation
+from lcpstep.doubts import finished
 from lcpstep.maps import periods
 from lcpstep.model import UncompiledCallback
 from lcpstep.pace import Pace
@@ -77,16 +78,20 @@ def test_an_interrupt_while_a_trajectory_is_put_together_loses_nothing(method, m
 
 
 @pytest.mark.parametrize(
-    "look", ["_compare_derivatives", "_warn_of_fast_gaps", "_of_obstacles", "too_deep", "unresolved"]
-)
-def test_an_interrupt_while_a_finished_run_is_looked_over_loses_nothing(look, monkeypatch):
+    ("of", "look"),
+    [
+        (simulation, "_compare_derivatives"), (simulation, "warn_of_fast_gaps"),
+        (finished, "_of_obstacles"), (finished, "too_deep"), (finished, "unresolved"),
+    ],
+)  # fmt: skip
+def test_an_interrupt_while_a_finished_run_is_looked_over_loses_nothing(of, look, monkeypatch):
     scene = scenes.double_pendulum(t_end=0.1)
     whole = simulate(scene, EventDriven())
 
     def hit(run):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(simulation, look, hit)
+    monkeypatch.setattr(of, look, hit)
     with pytest.raises(SimulationInterrupted) as caught:
         simulate(scene, EventDriven())
     kept = caught.value.trajectory

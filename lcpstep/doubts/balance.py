@@ -83,6 +83,8 @@ def _gain_at_impacts(run: Trajectory, m: Model, h: float) -> tuple[float, float]
     contacts = run.scene.contacts
     if contacts is None or contacts.friction is not None or driven(contacts) or m.mass.given:
         return 0.0, 0.0
+    if len(run.impacts) == 0:  # most short runs
+        return 0.0, 0.0
     k = _struck(run)
     k = k[(run.t[k + 1] - run.t[k] < (1.0 + NEAR) * h) & ~_over_a_corner(run, h, k)]
     if len(k) == 0:

@@ -45,9 +45,10 @@ def carried_where_possible(m: Model, order: int | str) -> Model:
 def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
     """Constants of steps of size h."""
     stiff, constant = is_stiff(m), m.linear and m.flat
-    most = longest(scene, m, method)
+    most, made = longest(scene, m, method), matrices(m, method, h)
     piece = min(method.h, most)
-    long = size(scene, m, method, piece, implicit(m, method, piece))
+    own = made["A_inverse"][0] if m.linear and piece == h else implicit(m, method, piece)
+    long = size(scene, m, method, piece, own)
     t_scale = max(abs(scene.t_span[0]), abs(scene.t_span[1]))
     if math.isfinite(scene.period):  # a callback may know the time no better than its phase
         t_scale = max(t_scale, scene.period)
@@ -59,7 +60,7 @@ def plan(scene: Scene, m: Model, method: Located, h: float) -> Plan:
         "exact": method.order == "exact", "longest": most,
         "clock": Clock(scene.t_span, turns(scene).stops, scene.period),
         "margin": MARGIN * t_scale,
-    } | matrices(m, method, h))  # fmt: skip
+    } | made)  # fmt: skip
 
 
 def matrices(m: Model, method: Located, h: float) -> dict[str, Array]:
