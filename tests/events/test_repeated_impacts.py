@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lagrangian import Coulomb, LinearContacts, LinearJoints, LinearSystem, Scene
-from lcpstep import EventDriven, Kind, Located, Status, simulate
+from lcpstep import EventDriven, Kind, Located, Status, recording, simulate
 
 RODS = [EventDriven(), Located(0.01, 4), Located(0.01, tolerance=1e-4), Located(0.01, 4, tolerance=1e-6)]
 
@@ -49,3 +49,21 @@ def test_a_body_that_slides_along_a_slit_loses_what_friction_takes_of_its_blows(
     blows = series(1.0, v0, (r, r))
     np.testing.assert_allclose(m.impulse.sum(axis=0), blows, rtol=1e-8)
     np.testing.assert_allclose(m.v[-1], [0.0, max(0.0, slip - mu * blows.sum())], rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("room", [4096, 40])
+def test_impacts_at_one_instant_go_on_where_the_log_has_been_emptied(room, monkeypatch):
+    """A bead of 1 kg between a wall and a body of 100 kg in a slit without clearance: hundreds of impacts, then rest.
+
+    They began anew with the room for the log, and so found no end: what had struck, and how often, was forgotten.
+    """
+    monkeypatch.setattr(recording, "EVENT_CAPACITY", room)
+    scene = Scene(
+        LinearSystem(M=np.diag([1.0, 100.0])), [0.0, 0.0], [0.1, -1.0], (0.0, 0.1),
+        LinearContacts(G=[[1.0, 0.0], [-1.0, 1.0], [0.0, -1.0]], restitution=[1.0, 0.9, 1.0]),
+    )  # fmt: skip
+    m = simulate(scene, EventDriven())
+    assert m.status is Status.DONE, m.message
+    np.testing.assert_allclose(m.v[-1], 0.0, rtol=0, atol=1e-9)
+    p = m.impulse.sum(axis=0)  # the bead's momentum is gone, and the body's
+    np.testing.assert_allclose([p[0] - p[1], p[1] - p[2]], [-0.1, 100.0], rtol=1e-9)

@@ -37,36 +37,36 @@ def jump(s: Rubbing, t: float) -> int:
     others, as in a wedge that closes, end in a plastic one of all contacts that touch, if there is friction.
     """
     most = ROUNDS if s.n_t == 0 else 2 * ROUNDS
-    if s.rounds == 0:
-        s.stalled = s.clock.tally.stalled
+    if s.rows.rounds == 0:
+        s.rows.stalled = s.clock.tally.stalled
         pass_by(s)
-    while s.rounds < most:
+    while s.rows.rounds < most:
         if not approaches(s):
             rejoin(s)
             find_who_may_stick(s)
-            if s.clock.tally.stalled > s.stalled + 1:  # the impacts of one instant count as one
-                s.clock.tally.stalled = s.stalled + 1
+            if s.clock.tally.stalled > s.rows.stalled + 1:  # the impacts of one instant count as one
+                s.clock.tally.stalled = s.rows.stalled + 1
             return DONE
         if s.clock.record.full(4 * s.n_c + 4):
             return BUFFER_FULL
         if s.clock.tally.events > s.clock.tally.max_events:
             return TOO_MANY_EVENTS
-        if s.rounds > 0 and not renew_friction(s, t):
+        if s.rows.rounds > 0 and not renew_friction(s, t):
             return NOT_FINITE
-        ratio = recurs(s.rows) if s.rounds > 0 else 0.0
+        ratio = recurs(s.rows) if s.rows.rounds > 0 else 0.0
         if ratio >= FOR_EVER:
             if not fades(s.rows):
                 return TOO_MANY_EVENTS if can_rest(s) else NO_IMPULSES
         elif ratio > 0.0:
             sum_up(s.rows, ratio)
         else:
-            if looks_back(s.rounds):
+            if looks_back(s.rows.rounds):
                 look_back(s.rows)
-            if s.rounds > 0 and not s.in_turn and not let_go(s, t):
+            if s.rows.rounds > 0 and not s.in_turn and not let_go(s, t):
                 return NOT_FINITE
-            s.rounds += 1
+            s.rows.rounds += 1
             # The last ones of what is held from all sides may leave speeds that but rounding contradicts
-            if not strike(s, t, s.rounds > ROUNDS) and not (s.rounds > 1 and fades(s.rows)):
+            if not strike(s, t, s.rows.rounds > ROUNDS) and not (s.rows.rounds > 1 and fades(s.rows)):
                 return NO_IMPULSES
     return TOO_MANY_EVENTS
 
@@ -240,7 +240,7 @@ def find_who_may_stick(s: Rubbing) -> None:
 
 def stands(s: Rubbing, c: int) -> bool:
     """Whether contact c has no sliding velocity, between or after the impacts of an instant."""
-    if s.rounds == 0 or s.n_t == 0:
+    if s.rows.rounds == 0 or s.n_t == 0:
         return has_stopped(s.rows, c)
     return abs(sliding(s.rows, c)) <= s.terms[s.n_c + c]
 
@@ -251,7 +251,7 @@ def begin_instant(s: Rubbing) -> None:
     Next to nothing is none: hops of a body at rest in a heap, on which no force acts but those of others, may else
     fade until no number tells them apart.
     """
-    s.rounds = 0
+    s.rows.rounds = 0
     clear(s.instant, s.n_r)
     for i in range(2 * s.n_c):
         s.terms[i] = GONE * s.rows.atol

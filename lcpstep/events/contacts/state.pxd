@@ -13,10 +13,10 @@ cdef class Rubbing(RungeKutta):
     cdef readonly Coefficients coefficients
     cdef Scan scan
     cdef readonly Py_ssize_t n_q, n_c, n_j, n_t, n_r, n_nodes
-    cdef public Py_ssize_t jams, rounds
+    cdef public Py_ssize_t jams
     cdef readonly bint in_turn, yields
     cdef readonly double scan_length
-    cdef Py_ssize_t guard, paced, loose, stalled
+    cdef Py_ssize_t guard, paced, loose
     cdef double found, slope, kept_to, shown, delay
     cdef readonly bint constant
     cdef bint plain, risen, sharing

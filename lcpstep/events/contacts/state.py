@@ -61,7 +61,6 @@ class Rubbing(RungeKutta):
         such a row has been, see `loose`
     leader, sharing              whose tangent is held for that of each contact at rest, where some stand for others
     risen                        the guard found has been above its band before it falls through zero
-    rounds, stalled              problems of impacts at this instant; events at one time before it
     doubt : (n_r,)               accelerations of rows that are not known where modes are sought, see `balance`
     guard, found, slope          the guard that acts, when, and how fast it falls;  seen, samples    scratch
     kept_to, shown, delay        up to when a row that is not held has stayed at rest, where it has left that, both as
@@ -95,7 +94,7 @@ class Rubbing(RungeKutta):
         self.constant = rows.fixed and not coefficients.varies
         ours = contacts.linear and not (contacts.force.given or contacts.frame.given or contacts.moded)
         self.plain = ours and self.constant and not rows.moving
-        self.in_turn, self.yields, self.jams, self.rounds, self.stalled = in_turn, yields, 0, 0, 0
+        self.in_turn, self.yields, self.jams = in_turn, yields, 0
         self.scan, self.coefficients, self.problem = Scan(), coefficients, rows.problem
         self.coefficients.use(self.problem.mu)
         self.guard, self.found, self.slope = -1, -1.0, 0.0

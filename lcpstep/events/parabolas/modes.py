@@ -25,43 +25,49 @@ from lcpstep.pointers import abs, max
 
 
 def jump(s: Mechanism) -> int:
-    """Impacts at the state q, v until no contact that is closed approaches."""
-    before = s.tally.stalled
-    for c in range(s.n_c):
-        s.terms[c], s.parting[c] = 0.0, 1 if just_opened(s, c) else 0
-    for turn in range(ROUNDS):
+    """Impacts at the state q, v until no closed contact approaches; a full record leaves `rounds` as it is."""
+    if s.rounds == 0:
+        begin_instant(s)
+    while s.rounds < ROUNDS:
         if not approaches(s):
             rejoin(s)
-            if s.tally.stalled > before + 1:  # the impacts of one instant count as one
-                s.tally.stalled = before + 1
+            s.rounds = 0
+            if s.tally.stalled > s.stalled + 1:  # the impacts of one instant count as one
+                s.tally.stalled = s.stalled + 1
             return DONE
         if s.record.event + 4 * s.n_c + 4 > s.record.event_capacity:
             s.next = JUMP
             return BUFFER_FULL
         if s.tally.events > s.tally.max_events:
             return TOO_MANY_EVENTS
-        ratio = recurs(s) if turn > 0 else 0.0
+        ratio = recurs(s) if s.rounds > 0 else 0.0
         if ratio >= FOR_EVER:
             if not fades(s):
                 return TOO_MANY_EVENTS
         elif ratio > 0.0:
             sum_up(s, ratio)
         else:
-            if looks_back(turn):
+            if looks_back(s.rounds):
                 look_back(s)
-            if turn > 0:
+            if s.rounds > 0:
                 let_go(s)
             if not strike(s):
                 return NO_IMPULSES
-            tell_impacts(s, s.t0)
+            tell_impacts(s)
             synchronise(s)
+        s.rounds += 1
     return TOO_MANY_EVENTS
 
 
-def just_opened(s: Mechanism, c: int) -> bool:
-    """Whether contact c has struck at this instant, as far as can be told, and the forces have opened it."""
-    rises = s.mode[c] == OPEN and s.curve[c] > 0.0
-    return rises and s.t0 - s.struck[c] <= s.untold(0.0)
+def begin_instant(s: Mechanism) -> None:
+    """No impact at this instant yet, but for what has struck a moment ago that cannot be told from it.
+
+    Of that the contacts part that the forces have opened since.
+    """
+    s.stalled = s.tally.stalled
+    for c in range(s.n_c):
+        rises = s.mode[c] == OPEN and s.curve[c] > 0.0
+        s.terms[c], s.parting[c] = 0.0, 1 if rises and s.t0 - s.struck[c] <= s.untold(0.0) else 0
 
 
 def let_go(s: Mechanism) -> None:
@@ -152,15 +158,15 @@ def has_come(s: Mechanism, c: int) -> bool:
     return False
 
 
-def tell_impacts(s: Mechanism, t: float) -> None:
+def tell_impacts(s: Mechanism) -> None:
     """Log the impacts of the problem just solved; contacts that it leaves without speed are closed."""
     for m in range(s.n_members):
         c, p = s.problem.ids[m], s.problem.impulse[m]
         before, noise = s.before[c], s.noise(c)
         if p > 0.0:
             u = -s.model.restitution[c] * before
-            s.log(t, c, before, u, p, IMPACT)
-            s.since[c], s.struck[c] = t - s.struck[c], t
+            s.log(s.t0, c, before, u, p, IMPACT)
+            s.since[c], s.struck[c] = s.t0 - s.struck[c], s.t0
         else:
             u = s.velocity[s.n_j + c]
         s.mode[c] = OPEN if u > noise else SLIDES

@@ -34,6 +34,7 @@ class Contacts(Rows):
     """Rows whose contacts open and close, stick and slide, strike and chatter.
 
     next, culprit       what comes next: BEGIN, MOVE, ...; contact or joint that a failure is about, or -1
+    rounds, stalled     problems of impacts at this instant; events at one time before it
     mapped              whether what forces do is known for the rows held, see `contacts.held`
     problem             the complementarity problem at hand, of an impact or of forces
     q, v, a : (n_q,)    state at hand, and acceleration with constraints;  multiplier : (n_r,)   forces by row
@@ -60,7 +61,7 @@ class Contacts(Rows):
     def __init__(self, *given: Any) -> None:
         Rows.__init__(self, *given)
         n, n_c, r = self.n_q, self.n_c, self.n_r
-        self.next, self.culprit, self.mapped = BEGIN, -1, False
+        self.next, self.culprit, self.mapped, self.rounds, self.stalled = BEGIN, -1, False, 0, 0
         self.problem = ContactProblem(np.zeros(n_c), self.n_t > 0, r, False)
         self.contact_numbers = np.zeros(4 * n + 7 * r + 12 * n_c)
         self.a = doubles(self.contact_numbers)
