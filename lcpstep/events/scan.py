@@ -35,7 +35,7 @@ class Seen(NamedTuple):
 
 def seen(scene: Scene, m: Model) -> Seen:
     """Samples of what moves by itself in a scene; None of what does not."""
-    times = sample_times(scene)
+    times = np.asarray(scene.t_span[0] + sampled_length(scene) * PLACES / SAMPLES)
     parts = (m.motion, scene.n_c), (m.frame, scene.n_q)
     return Seen(times, *(samples_of(scene, f, n, times) if f.given else None for f, n in parts))
 
@@ -91,11 +91,6 @@ def fastest_turn(scene: Scene, m: Model, samples: Seen | None) -> float:
 def sampled_length(scene: Scene) -> float:
     """How much of the motion of what moves by itself is looked at: a period, or the whole span [s]."""
     return min(scene.period, scene.t_span[1] - scene.t_span[0])
-
-
-def sample_times(scene: Scene) -> Array:
-    """Times at which it is looked at, (SAMPLES,)."""
-    return np.asarray(scene.t_span[0] + sampled_length(scene) * PLACES / SAMPLES)
 
 
 def _rates(scene: Scene, m: Model, samples: Seen, step: float) -> Iterator[Array]:

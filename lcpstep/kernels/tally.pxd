@@ -1,2 +1,2 @@
 cdef class Tally:
-    cdef public Py_ssize_t steps, parts, forces, events, stalled, max_events
+    cdef public Py_ssize_t steps, parts, events, stalled, max_events

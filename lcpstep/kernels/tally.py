@@ -1,4 +1,4 @@
-"""What a loop counts: steps, evaluations of forces, events; and whether there are too many of these."""
+"""What a loop counts: steps and events; and whether there are too many of these."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ MAX_STALLED = 100_000  # events at one time
 class Tally:
     """Counters of a run.
 
-    steps, forces, events    so far
-    parts                    of steps, each up to an event within the step
-    stalled                  events since the time last went on
-    max_events               events allowed
+    steps, events    so far
+    parts            of steps, each up to an event within the step
+    stalled          events since the time last went on
+    max_events       events allowed
     """
 
     def __init__(self, max_events: int) -> None:
-        self.steps = self.parts = self.forces = self.events = self.stalled = 0
+        self.steps = self.parts = self.events = self.stalled = 0
         self.max_events = max_events
 
     def add_event(self, stalled: bool) -> None:
@@ -28,7 +28,7 @@ class Tally:
 
     def clear(self) -> None:
         """Nothing has happened yet."""
-        self.steps = self.parts = self.forces = self.events = self.stalled = 0
+        self.steps = self.parts = self.events = self.stalled = 0
 
     def too_many(self) -> bool:
         """Whether there were more events than allowed, or events without end at one time."""

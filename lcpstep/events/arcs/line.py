@@ -92,8 +92,11 @@ def _along(
     normal = float(e @ (K @ place - constant))
     mass, forces = float(d @ M @ d), (float(d @ (constant - K @ place)), float(d @ cosine), float(d @ sine))
     o = oscillator(mass, float(d @ C @ d), float(d @ K @ d), *forces, force.omega)
-    if not normal > 0.0 or o is None or not _bounded(o):
+    if not normal > 0.0 or o is None:
         return None
+    delta, w2 = float(o.delta), float(o.w2)
+    if not ((delta == 0.0 and w2 == 0.0) or (delta >= 0.0 and w2 > delta * delta)):
+        return None  # no bound on derivatives of the free motion is known
     swings = o.Omega != 0.0
     return Line(
         o, mass, forces[1] / mass if swings else 0.0, forces[2] / mass if swings else 0.0, place, d, normal,
@@ -104,12 +107,6 @@ def _along(
 def _nothing(terms: Any) -> bool:
     """Whether a sum is zero to rounding."""
     return abs(float(np.sum(terms))) <= NOISE * float(np.sum(np.abs(terms)))
-
-
-def _bounded(o: Oscillator) -> bool:
-    """Whether the free motion is one that a bound on its derivatives is known of."""
-    delta, w2 = float(o.delta), float(o.w2)
-    return (delta == 0.0 and w2 == 0.0) or (delta >= 0.0 and w2 > delta * delta)
 
 
 def _slip(slip: Any) -> tuple[float, float, float, float]:

@@ -68,7 +68,7 @@ class Arc(Clock):
         self.now, self.stride, self.rtol, self.atol = t_span[0], stride, rtol, atol
         self.record, self.tally, self.begun = record, tally, False
         self.end, self.side, self.paid, self.friction = inf, 0.0, 0.0, 0.0
-        self.noise = self.phi = self.a = self.line = self.room = self.spring = self.zeta = self.dzeta = 0.0
+        self.noise = self.phi = self.a = self.line = self.room = self.spring = self.dzeta = 0.0
         self.P1 = self.Q1 = self.P2 = self.Q2 = 0.0
         self.cos1 = self.cos2 = 1.0
         self.sin1 = self.sin2 = 0.0
@@ -125,9 +125,9 @@ def set_out(s: Arc, slides: bool) -> None:
     else:
         s.line, s.P1, s.Q1 = 0.0, s.slip_cosine, s.slip_sine
         s.P2, s.Q2 = s.Omega * s.Y, -s.Omega * s.X
-        s.zeta = s.z - s.X * s.cos2 - s.Y * s.sin2
+        zeta = s.z - s.X * s.cos2 - s.Y * s.sin2
         s.dzeta = s.dz - s.P2 * s.cos2 - s.Q2 * s.sin2
-        s.spring = s.f0 - s.direction * s.pull - s.w2 * s.zeta
+        s.spring = s.f0 - s.direction * s.pull - s.w2 * zeta
         s.a = s.spring - 2.0 * s.delta * s.dzeta
         s.room = s.direction * (s.dz + belt_slip(s)) if slides else 0.0
 

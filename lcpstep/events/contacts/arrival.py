@@ -22,7 +22,7 @@ from lcpstep.pointers import abs, max
 def arrive(s: Rubbing, g: int) -> int:
     """The motion has come to the event of guard g: what comes next into `next`. A status."""
     c = g // GUARDS
-    if not measure(s, s.clock.t0, s.y):
+    if not measure(s, s.rows.t0, s.y):
         return NOT_FINITE
     if of_force(s, g):
         s.rows.next = OBEY if changes(s) else SETTLE
@@ -74,8 +74,8 @@ def meet(s: Rubbing, c: int) -> int:
         return NO_SURFACE
     s.touches[c] = 1
     begin_instant(s)
-    if s.clock.leaves_to_corner(s.clock.t0):
-        s.clock.start_at(s.clock.high)
+    if s.rows.leaves_to_corner(s.rows.t0):
+        s.rows.start_at(s.rows.high)
         return land_on_corner(s)
     if not s.in_turn:
         part_before(s)

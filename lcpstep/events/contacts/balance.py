@@ -47,14 +47,14 @@ def lets_go(s: Rubbing, c: int) -> bool:
     return s.mode[c] != OPEN and s.loaded[c] == 1 and (opens or slips)
 
 
-def reconsider(s: Rubbing, t: float, longest: float) -> int:
+def reconsider(s: Rubbing, longest: float) -> int:
     """`decide` anew at the base state, with accelerations in `doubt` that are not known; a status.
 
     A contact opens only by an acceleration that is more than that. Where nothing is in doubt, `doubt` is zero.
     """
     h, share = min(s.next_step, longest), MOMENT
     while share >= SHORTEST:
-        if not foresee(s, t, share * h):
+        if not foresee(s, share * h):
             return NOT_FINITE
         if cannot_be_told(s, share * h):
             code = decide(s)
@@ -83,8 +83,8 @@ def pulls(s: Rubbing) -> bool:
     return some
 
 
-def foresee(s: Rubbing, t: float, tau: float) -> bool:
-    """What the accelerations of the rows, with joints alone, change by from t to t + tau, into `doubt`."""
+def foresee(s: Rubbing, tau: float) -> bool:
+    """What the accelerations of the rows, with joints alone, change by within the time tau, into `doubt`."""
     n = s.n_q
     accelerate_on_joints(s.rows)
     for i in range(s.n_r):
@@ -92,12 +92,12 @@ def foresee(s: Rubbing, t: float, tau: float) -> bool:
     for j in range(n):
         s.seen[j] = s.q[j] + tau * s.v[j]
         s.seen[n + j] = s.v[j] + tau * s.a[j]
-    if not measure(s, t + tau, s.seen):
+    if not measure(s, s.rows.t0 + tau, s.seen):
         return False
     accelerate_on_joints(s.rows)
     for i in range(s.n_r):
         s.doubt[i] = DOUBTFUL * abs(acceleration_of(s.rows, i, s.a) - s.doubt[i])
-    return measure(s, t, s.y)
+    return measure(s, s.rows.t0, s.y)
 
 
 def cannot_be_told(s: Rubbing, tau: float) -> bool:

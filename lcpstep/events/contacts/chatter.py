@@ -45,7 +45,7 @@ from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import abs, after, max, nan
 
 
-def close_small(s: Rubbing, t: float) -> bool:
+def close_small(s: Rubbing) -> bool:
     """Close the contacts whose further impacts stay below the tolerance; whether there were any.
 
     Modes must be obeyed, everything measured at the base.
@@ -53,7 +53,7 @@ def close_small(s: Rubbing, t: float) -> bool:
     accelerate(s.rows)
     for c in range(s.n_c):
         s.rows.curve[c] = acceleration_of(s.rows, s.n_j + c, s.a)
-    if not find_over(s.rows) or not stays_so(s, t):
+    if not find_over(s.rows) or not stays_so(s):
         return False
     take_along(s.rows)
     if disturbs(s.rows):
@@ -99,7 +99,7 @@ def stops_others(s: Rubbing, c: int, T: float) -> bool:
     return False
 
 
-def stays_so(s: Rubbing, t: float) -> bool:
+def stays_so(s: Rubbing) -> bool:
     """Whether any sequence is left to be summed up, of those whose acceleration does not change too much meanwhile.
 
     The end is then off by T change / |alpha|, in which the gap's terms move by no more than the tolerance.
@@ -111,23 +111,23 @@ def stays_so(s: Rubbing, t: float) -> bool:
             s.rows.left[c] = -1.0
         elif T > 0.0:
             speed = max(s.terms[c] / NOISE, -alpha * s.scan_length)
-            change = abs(later(s, c, t, T) - alpha)
+            change = abs(later(s, c, T) - alpha)
             if not change * T * speed <= -alpha * gap_tolerance(s.rows, c):
                 s.rows.left[c] = -1.0
         some = some or s.rows.left[c] >= 0.0
     return some
 
 
-def later(s: Rubbing, c: int, t: float, T: float) -> float:
+def later(s: Rubbing, c: int, T: float) -> float:
     """Gap acceleration of contact c at the time T from now, along the tangent of the motion."""
     n, i, curve = s.n_q, s.n_j + c, nan
     q, v = s.seen, after(s.seen, n)
     for j in range(n):
         q[j] = s.q[j] + T * s.v[j]
         v[j] = s.v[j] + T * s.a[j]
-    if know_rows(s, t + T, s.seen, s.dy):
+    if know_rows(s, s.rows.t0 + T):
         curve = acceleration_of(s.rows, i, after(s.dy, n))
-    measure(s, t, s.y)
+    measure(s, s.rows.t0, s.y)
     hold_modes(s.rows)
     return curve
 

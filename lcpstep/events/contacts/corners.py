@@ -22,9 +22,9 @@ from lcpstep.pointers import abs
 
 def turn_corner(s: Rubbing) -> int:
     """Beyond a corner contacts strike, those as well that land on it to rounding, and modes are sought; a status."""
-    if s.n_c > 0 and not measure(s, s.clock.t0, s.y):
+    if s.n_c > 0 and not measure(s, s.rows.t0, s.y):
         return NOT_FINITE
-    moment = s.clock.moment(s.clock.t0)
+    moment = s.rows.moment(s.rows.t0)
     for c in range(s.n_c):
         u = s.velocity[s.n_j + c]
         falls = s.mode[c] == OPEN and s.hops[c] == 0 and u < 0.0  # low hops go on
@@ -42,9 +42,9 @@ def land_on_corner(s: Rubbing) -> int:
 
 def strike_beyond(s: Rubbing) -> int:
     """Enter the next interval, where the contacts strike that are closed or have come with the velocity `before`."""
-    s.clock.find_corners(s.clock.t0)
+    s.rows.find_corners(s.rows.t0)
     go_beyond(s.rows, s.y)
-    if not measure(s, s.clock.t0, s.y):
+    if not measure(s, s.rows.t0, s.y):
         return NOT_FINITE
     begin_instant(s)
     if joints_jump(s.rows, s.v):

@@ -46,15 +46,15 @@ def measure_friction(s: Rubbing, t: float, y: Doubles) -> bool:
         s.slip[c] = velocity_of(s.rows, i, v)
         if s.mode[c] in (STICKS, LEANS) or (s.mode[c] == SLIDES and s.direction[c] * s.slip[c] < 0.0):
             s.slip[c] = 0.0
-    return s.coefficients.measure(s.clock.inside(t), q, s.slip)
+    return s.coefficients.measure(s.rows.inside(t), q, s.slip)
 
 
-def renew_friction(s: Rubbing, t: float) -> bool:
+def renew_friction(s: Rubbing) -> bool:
     """Coefficients at the sliding velocities that the impact before has left; False where one is none."""
     if not s.coefficients.varies:
         return True
     copy(s.slip, after(s.velocity, s.n_j + s.n_c), s.n_c)
-    return s.coefficients.measure(s.clock.inside(t), s.q, s.slip)
+    return s.coefficients.measure(s.rows.inside(s.rows.t0), s.q, s.slip)
 
 
 def measure(s: Rubbing, t: float, y: Doubles) -> bool:

@@ -16,6 +16,7 @@ from lcpstep.events.contacts.held import right_hand_side
 from lcpstep.events.contacts.hops import begin_hops, first_landing
 from lcpstep.events.contacts.loose import forget, notice
 from lcpstep.events.contacts.state import GUARDS, Rubbing
+from lcpstep.events.hybrid.locate import UNKNOWN
 from lcpstep.events.hybrid.roots import DEGREE, NONE, SAMPLES, convert, first_rise, taylor
 from lcpstep.events.rows.contacts import gap_tolerance, rubs, speed_tolerance
 from lcpstep.events.rows.equations import list_gaps, measure_rates, size_of, velocity_of
@@ -29,7 +30,6 @@ from lcpstep.pointers import Doubles, abs, after, max, min
 PARTS = 64  # of a step, at most, in which guards are polynomials
 MOST_PARTS, UNSEEN = 4096, 1e-6  # the same where a gap turns faster than the motion: by so much of it
 RESOLVED = 1e-8  # difference of guard and polynomial, relative to its largest value
-UNKNOWN = -2  # in place of a guard: one is not finite
 LOW = 1e-2  # of a hop's height
 OFF = 1.0  # value of a guard that a contact does not have
 
@@ -80,9 +80,9 @@ def read(s: Rubbing, t: float, y: Doubles) -> bool:
     return total - total == 0.0
 
 
-def begin_guards(s: Rubbing, t: float) -> bool:
+def begin_guards(s: Rubbing) -> bool:
     """Bands of the guards, and which of them are beyond theirs, as modes begin; False where one is not finite."""
-    if not look(s, t, s.y):
+    if not look(s, s.rows.t0, s.y):
         return False
     begin_hops(s)
     s.flying, forces, share = True, force_noise(s), share_left(s)
@@ -171,7 +171,7 @@ def fits(s: Rubbing, h: float, g: int, parts: int) -> bool:
     error, most = convert(s.scan), largest(s.scan.sample, 0.0, SAMPLES)
     if error <= RESOLVED * most + s.band[g]:
         return True
-    hidden = parts * NOISE * (abs(s.clock.t0) + h) / h  # of a gap that a shorter part changes by all of it
+    hidden = parts * NOISE * (abs(s.rows.t0) + h) / h  # of a gap that a shorter part changes by all of it
     turns = s.mode[g // GUARDS] == OPEN and error > (UNSEEN + hidden) * most
     if parts < (MOST_PARTS if turns else PARTS):
         return False
@@ -192,10 +192,10 @@ def stays_clear(s: Rubbing, h: float) -> bool:
 
     Of a linear system without functions of the user's, whose guards are linear in the state.
     """
-    if not look_at_stage(s, 0, s.clock.t0, s.y):
+    if not look_at_stage(s, 0, s.rows.t0, s.y):
         return False
     copy(s.samples, s.value, GUARDS * s.n_c)
-    if not look_at_stage(s, STAGES, s.clock.t0 + h, s.y_new):
+    if not look_at_stage(s, STAGES, s.rows.t0 + h, s.y_new):
         return False
     find_bows(s, h)
     for g in range(GUARDS * s.n_c):
@@ -240,12 +240,12 @@ def sample(s: Rubbing, h: float, a: float, b: float) -> bool:
     """All guards at the points of the part a .. b of a step; False where one is not finite."""
     for j in range(SAMPLES):
         place = a + (b - a) * s.scan.points[j]
-        if not look_between(s, place, s.clock.t0 + place * h):
+        if not look_between(s, place, s.rows.t0 + place * h):
             return False
         for g in range(GUARDS * s.n_c):
             s.samples[g * SAMPLES + j] = s.value[g]
         if j <= DEGREE:
-            notice(s, place, s.clock.t0 + place * h)
+            notice(s, place, s.rows.t0 + place * h)
     return True
 
 

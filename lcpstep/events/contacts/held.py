@@ -53,13 +53,13 @@ def right_hand_side(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
     return a[0] - a[0] == 0.0
 
 
-def know_rows(s: Rubbing, t: float, y: Doubles, dy: Doubles) -> bool:
-    """The same, and rates and biases of all rows, if none is held as well."""
-    if not right_hand_side(s, t, y, dy):
+def know_rows(s: Rubbing, t: float) -> bool:
+    """The same of the state `seen`, into `dy`, and rates and biases of all rows, if none is held as well."""
+    if not right_hand_side(s, t, s.seen, s.dy):
         return False
     if s.rows.n_held == 0:
-        measure_rates(s.rows, t, y)
-    know_biases(s, t, y)
+        measure_rates(s.rows, t, s.seen)
+    know_biases(s, t, s.seen)
     return True
 
 
@@ -74,7 +74,7 @@ def accelerate(s: Rubbing, t: float, y: Doubles, a: Doubles) -> None:
     n, m = s.n_q, s.n_q + s.n_r
     if not s.rows.mapped:
         map_forces(s)
-    total_force(s.model, s.clock.inside(t), y, after(y, n), s.force)
+    total_force(s.model, s.rows.inside(t), y, after(y, n), s.force)
     clear(s.effect, m)
     for j in range(n):
         add(s.effect, s.force[j], after(s.effects, j * m), m)

@@ -57,13 +57,6 @@ def begin_hops(s: Rubbing) -> None:
         s.hopping = s.hopping or s.hops[c] == 1
 
 
-def find_landings(s: Rubbing, h: float) -> None:
-    """When the hops that begin at the base land within the step of size h, into `lands`."""
-    if s.hopping:
-        for c in range(s.n_c):
-            s.lands[c] = landing(s, c, h)
-
-
 def landing(s: Rubbing, c: int, h: float) -> float:
     """When contact c lands within the step, NEVER if it does not, or NONE if the gap itself is to be looked at."""
     guess = hop_time(s, c)
@@ -96,7 +89,7 @@ def is_low(s: Rubbing, c: int, h: float) -> bool:
     """Whether a hop that is pressed stays low up to the end of the step of size h, at a corner or not."""
     if h > SHORT * s.scan_length:
         return False
-    low = LOW if h >= s.clock.high - s.clock.t0 else FAINT
+    low = LOW if h >= s.rows.high - s.rows.t0 else FAINT
     return highest(s.height[c], s.rise[c], s.bend[c], h) <= low * largest(s.q, 0.0, s.n_q)
 
 
@@ -127,8 +120,8 @@ def ends_so(s: Rubbing, c: int, tau: float) -> bool:
     It is another one where the obstacle has an edge or a valley, at which the gap velocity jumps.
     """
     s.at(tau / s.length, s.seen)
-    list_gaps(s.rows, s.clock.t0 + tau, s.seen, s.gap)
-    strayed = s.clock.untold(s.length) * abs(s.rate[s.n_j + c])
+    list_gaps(s.rows, s.rows.t0 + tau, s.seen, s.gap)
+    strayed = s.rows.untold(s.length) * abs(s.rate[s.n_j + c])
     errors = max(s.rows.rounding_of_gap(c) + strayed, gap_tolerance(s.rows, c))
     return abs(s.gap[s.n_j + c]) <= UNLIKE * tau * abs(s.rise[c]) + errors
 
@@ -154,9 +147,9 @@ def follow(s: Rubbing, c: int, tau: float) -> tuple[float, float, bool]:
 
 def change_of_bend(s: Rubbing, c: int, tau: float) -> float:
     """By how much the gap acceleration at tau after the base differs from that at the base."""
-    i, t = s.n_j + c, s.clock.t0 + tau
+    i, t = s.n_j + c, s.rows.t0 + tau
     s.at(tau / s.length, s.seen)
-    if not know_rows(s, t, s.seen, s.dy):
+    if not know_rows(s, t):
         return nan
     return acceleration_of(s.rows, i, after(s.dy, s.n_q)) - s.bend[c]
 
@@ -203,7 +196,7 @@ def interrupt(s: Rubbing, g: int, tau: float) -> None:
 
 def carry(s: Rubbing) -> None:
     """Beyond the end of a step without an event low hops go on, unless the surface jumps there; `dy` is known."""
-    know_biases(s, s.clock.t0, s.y)
+    know_biases(s, s.rows.t0, s.y)
     for c in range(s.n_c):
         i = s.n_j + c
         u = velocity_of(s.rows, i, s.v)

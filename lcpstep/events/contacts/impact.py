@@ -29,7 +29,7 @@ from lcpstep.kernels.vectors import clear, copy_indices
 from lcpstep.pointers import abs, after, inf, max, min
 
 
-def jump(s: Rubbing, t: float) -> int:
+def jump(s: Rubbing) -> int:
     """Impacts until no contact on its surface approaches; those that are left without speed are closed.
 
     `begin_instant` has set `rounds` to zero, and a full record leaves it as it is.
@@ -38,20 +38,20 @@ def jump(s: Rubbing, t: float) -> int:
     """
     most = ROUNDS if s.n_t == 0 else 2 * ROUNDS
     if s.rows.rounds == 0:
-        s.rows.stalled = s.clock.tally.stalled
+        s.rows.stalled = s.rows.tally.stalled
         pass_by(s)
     while s.rows.rounds < most:
         if not approaches(s):
             rejoin(s)
             find_who_may_stick(s)
-            if s.clock.tally.stalled > s.rows.stalled + 1:  # the impacts of one instant count as one
-                s.clock.tally.stalled = s.rows.stalled + 1
+            if s.rows.tally.stalled > s.rows.stalled + 1:  # the impacts of one instant count as one
+                s.rows.tally.stalled = s.rows.stalled + 1
             return DONE
-        if s.clock.record.full(4 * s.n_c + 4):
+        if s.rows.record.full(4 * s.n_c + 4):
             return BUFFER_FULL
-        if s.clock.tally.events > s.clock.tally.max_events:
+        if s.rows.tally.events > s.rows.tally.max_events:
             return TOO_MANY_EVENTS
-        if s.rows.rounds > 0 and not renew_friction(s, t):
+        if s.rows.rounds > 0 and not renew_friction(s):
             return NOT_FINITE
         ratio = recurs(s.rows) if s.rows.rounds > 0 else 0.0
         if ratio >= FOR_EVER:
@@ -62,16 +62,16 @@ def jump(s: Rubbing, t: float) -> int:
         else:
             if looks_back(s.rows.rounds):
                 look_back(s.rows)
-            if s.rows.rounds > 0 and not s.in_turn and not let_go(s, t):
+            if s.rows.rounds > 0 and not s.in_turn and not let_go(s):
                 return NOT_FINITE
             s.rows.rounds += 1
             # The last ones of what is held from all sides may leave speeds that but rounding contradicts
-            if not strike(s, t, s.rows.rounds > ROUNDS) and not (s.rows.rounds > 1 and fades(s.rows)):
+            if not strike(s, s.rows.rounds > ROUNDS) and not (s.rows.rounds > 1 and fades(s.rows)):
                 return NO_IMPULSES
     return TOO_MANY_EVENTS
 
 
-def strike(s: Rubbing, t: float, plastic: bool) -> bool:
+def strike(s: Rubbing, plastic: bool) -> bool:
     """The impact of contacts that are closed or approach, or a plastic one of all that touch; False: none found.
 
     What is held from all sides cannot leave every obstacle as its restitution asks: where no impulses answer, the
@@ -79,19 +79,19 @@ def strike(s: Rubbing, t: float, plastic: bool) -> bool:
     """
     look_before(s)
     copy_indices(s.tried, s.mode, s.n_c)
-    found = strike_by_either(s, t, plastic)
+    found = strike_by_either(s, plastic)
     if not found and s.n_t > 0:
         # The plastic one has closed all that touch, and not only what is struck
         copy_indices(s.mode, s.tried, s.n_c)
         s.problem.work.thorough = True
-        found = strike_by_either(s, t, plastic)
+        found = strike_by_either(s, plastic)
         s.problem.work.thorough = False
     return found
 
 
-def strike_by_either(s: Rubbing, t: float, plastic: bool) -> bool:
+def strike_by_either(s: Rubbing, plastic: bool) -> bool:
     """By its own law, if not `plastic`, or a plastic one."""
-    return strike_together(s, t, plastic) or (not plastic and strike_together(s, t, True))
+    return strike_together(s, plastic) or (not plastic and strike_together(s, True))
 
 
 def look_before(s: Rubbing) -> None:
@@ -133,12 +133,12 @@ def take_for_none(s: Rubbing, c: int) -> None:
         s.velocity[T] = 0.0
 
 
-def strike_together(s: Rubbing, t: float, plastic: bool) -> bool:
+def strike_together(s: Rubbing, plastic: bool) -> bool:
     """`strike` by one of the laws, from the velocities before it."""
     n_a, n_f = gather(s, plastic)
     if not find_impulses(s, n_a, n_f, plastic):
         return False
-    strike_with(s, t, n_a, n_f, -1, plastic)
+    strike_with(s, n_a, n_f, -1, plastic)
     return True
 
 
@@ -176,12 +176,13 @@ def pose(s: Rubbing) -> tuple[int, int]:
     return n_a, n_f
 
 
-def strike_with(s: Rubbing, t: float, n_a: int, n_f: int, jammed: int, plastic: bool) -> None:
+def strike_with(s: Rubbing, n_a: int, n_f: int, jammed: int, plastic: bool) -> None:
     """Apply the impulses found, and close or open the contacts by the velocities that they leave.
 
     jammed : the contact that has, -1 where none has, n_c where several together have
     A plastic one stands for impacts without end, and is told as such where the law of a contact is another.
     """
+    t = s.rows.t0
     for a in range(n_a + n_f):
         s.rows.push(row_of(s.rows, a, n_a), s.problem.impulse[a])
     stop_joints(s.rows)
@@ -193,7 +194,7 @@ def strike_with(s: Rubbing, t: float, n_a: int, n_f: int, jammed: int, plastic: 
                 u = 0.0 - s.model.restitution[c] * min(s.before[c], 0.0)  # by the law
             kind = ACCUMULATION if plastic and s.model.restitution[c] > 0.0 else IMPACT
             kind = JAM if c == jammed or jammed == s.n_c else kind
-            s.clock.log(t, c, s.before[c], u, s.problem.impulse[a], kind)
+            s.rows.log(t, c, s.before[c], u, s.problem.impulse[a], kind)
             s.rows.since[c], s.rows.struck[c], s.carried[c] = t - s.rows.struck[c], t, 0
         s.mode[c], s.jumped[c] = OPEN if u > s.terms[c] else SLIDES, 0.0
 

@@ -28,11 +28,11 @@ SHORT = 1e-11  # of the fastest sliding: what forces change in no time, a hundre
 LEFT = 1e-8  # the same: impulses that change less are those of forces
 
 
-def jam(s: Rubbing, t: float) -> int:
+def jam(s: Rubbing) -> int:
     """The impact of the contact that jams (`culprit`), or of all that have no forces, at the base state; a status."""
-    if not measure(s, t, s.y):
+    if not measure(s, s.rows.t0, s.y):
         return NOT_FINITE
-    if s.clock.record.full(4 * s.n_c + 4):
+    if s.rows.record.full(4 * s.n_c + 4):
         return BUFFER_FULL
     clear(s.instant, s.n_r)
     for c in range(s.n_c):
@@ -46,7 +46,7 @@ def jam(s: Rubbing, t: float) -> int:
         if not jam_together(s, n_a, n_f):
             return PAINLEVE_INCONSISTENT
     s.jams += 1
-    strike_with(s, t, n_a, n_f, hit, False)
+    strike_with(s, n_a, n_f, hit, False)
     clear(s.problem.slow, s.n_c)
     s.rows.next = JUMP
     return DONE

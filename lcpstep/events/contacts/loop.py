@@ -36,10 +36,12 @@ from lcpstep.events.contacts.loose import find_loose
 from lcpstep.events.contacts.modes import adopt_modes, decide, keep_mode, obey, undecided
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.step import FURTHER, LOOK_AHEAD
-from lcpstep.events.contacts.surfaces import come_apart, come_to_rest, contradict, find_closed
+from lcpstep.events.contacts.surfaces import come_to_rest, find_closed
 from lcpstep.events.contacts.switching import look_at_guards, switch
+from lcpstep.events.rows.held import contradiction, parted
 from lcpstep.events.rows.keep import keep, keep_event
 from lcpstep.kernels.course import DUE, Events
+from lcpstep.kernels.dynamics import gaps
 from lcpstep.kernels.status import BUFFER_FULL, DONE, JOINTS_FAILED, NOT_FINITE, PAINLEVE_INCONSISTENT
 from lcpstep.kernels.vectors import clear, copy, copy_indices
 from lcpstep.pointers import Doubles, after, min
@@ -49,7 +51,7 @@ class Course(Events):
     """The loop over steps and events of s, a `Rubbing`: what `rows.next` asks for, or else a step of the motion."""
 
     def __init__(self, s: Rubbing) -> None:
-        super().__init__(s.clock, s.clock.record.event_capacity - s.clock.record.event_capacity // 2)
+        super().__init__(s.rows, s.rows.record.event_capacity - s.rows.record.event_capacity // 2)
         self.s = s
 
     def stage(self, goal: int) -> int:
@@ -72,7 +74,7 @@ class Course(Events):
     @cython.ccall
     def keep_now(self) -> None:
         """Keep the state at the base time, called from Python."""
-        keep(self.s.rows, self.s.clock.t0, self.s.y)
+        keep(self.s.rows, self.s.rows.t0, self.s.y)
 
 
 def occur(s: Rubbing) -> int:
@@ -80,7 +82,7 @@ def occur(s: Rubbing) -> int:
     if s.rows.next == BEGIN:
         return begin(s)
     if s.rows.next == JUMP:
-        code = jump(s, s.clock.t0) if come_to_rest(s) else NOT_FINITE
+        code = jump(s) if come_to_rest(s) else NOT_FINITE
         if code == DONE:
             s.rows.next = SETTLE
         s.guards = ENTERED if s.guards == ENTERED else JUMPED
@@ -90,7 +92,8 @@ def occur(s: Rubbing) -> int:
         return switch(s)
     settles = s.rows.next == SETTLE
     s.rows.next = MOVE
-    return settle(s) if settles else obey_found(s)
+    code = settle(s) if settles else obey(s)
+    return set_out(s) if code == DONE else code
 
 
 def yielding(s: Rubbing, code: int) -> int:
@@ -98,36 +101,39 @@ def yielding(s: Rubbing, code: int) -> int:
     if code == PAINLEVE_INCONSISTENT and s.n_t == 0:
         return NO_FORCES
     if code == PAINLEVE_INCONSISTENT and s.yields:
-        return jam(s, s.clock.t0)
+        return jam(s)
     return code
 
 
 def go_further(s: Rubbing) -> int:
     """A step of the motion, or what precedes it: a look at guards, the first state kept, a corner; a status."""
-    if s.watched and s.guards != LOOKED:
+    if s.watch is not None and s.guards != LOOKED:
         look_at_guards(s)
         return DONE
-    if s.clock.record.row == 0 and s.clock.record.n_times == 0:
-        keep(s.rows, s.clock.t0, s.y)
+    if s.rows.record.row == 0 and s.rows.record.n_times == 0:
+        keep(s.rows, s.rows.t0, s.y)
         return DONE
-    return turn_corner(s) if s.clock.t0 >= s.clock.high else progress(s)
+    return turn_corner(s) if s.rows.t0 >= s.rows.high else progress(s)
 
 
 def progress(s: Rubbing) -> int:
     """One step of the motion, up to an event; those that take no time are counted, for rounding may ask for them."""
-    t, steps = s.clock.t0, s.clock.tally.steps
+    t, steps = s.rows.t0, s.rows.tally.steps
     code = s.proceed()
-    s.clock.tally.parts += s.clock.tally.steps == steps
-    if code == DONE and s.rows.n_kept < s.n_j and come_apart(s):
-        code = JOINTS_FAILED
-    s.clock.tally.stalled = s.clock.tally.stalled + 1 if s.clock.t0 - t <= s.moment() else 0
+    s.rows.tally.parts += s.rows.tally.steps == steps
+    if code == DONE and s.rows.n_kept < s.n_j:
+        gaps(s.rows.joints, s.rows.t0, s.q, s.v, s.gap)
+        i = parted(s.rows, s.gap, s.q)
+        if i >= 0:
+            s.rows.culprit, code = i, JOINTS_FAILED
+    s.rows.tally.stalled = s.rows.tally.stalled + 1 if s.rows.t0 - t <= s.no_time() else 0
     return code
 
 
 def begin(s: Rubbing) -> int:
     """The state at the start of the span, where gaps that are zero to rounding or the tolerance are closed."""
-    s.clock.find_corners(s.clock.t0)
-    if not measure(s, s.clock.t0, s.y):
+    s.rows.find_corners(s.rows.t0)
+    if not measure(s, s.rows.t0, s.y):
         return NOT_FINITE
     begin_instant(s)
     find_closed(s)
@@ -137,51 +143,51 @@ def begin(s: Rubbing) -> int:
 
 def settle(s: Rubbing) -> int:
     """Forces and modes at the base state, where `may_stick` says which contacts do not slide; hops that end."""
-    t = s.clock.t0
     for turn in range(s.n_c + 1):
-        if not measure(s, t, s.y):
+        if not measure(s, s.rows.t0, s.y):
             return NOT_FINITE
-        code = seek_modes(s, t)
+        code = seek_modes(s)
         if code == DONE:
-            code = obey(s, t)
+            code = obey(s)
         if code != DONE:
             return code
-        if turn == s.n_c or not close_small(s, t):
+        if turn == s.n_c or not close_small(s):
             break
-    return set_out(s, t)
+    return DONE
 
 
-def seek_modes(s: Rubbing, t: float) -> int:
+def seek_modes(s: Rubbing) -> int:
     """New modes at the base state just measured, or a little later where it leaves them open; a status.
 
     What velocities are known to is that of this instant, and not of states that are looked at further on.
     """
-    longest = min(s.scan_length, s.clock.border() - t)
+    longest = min(s.scan_length, s.rows.border() - s.rows.t0)
     copy(s.samples, s.terms, 2 * s.n_c)
     code = decide(s)
-    if s.rows.n_kept < s.n_j and contradict(s):
+    i = contradiction(s.rows, s.a) if s.rows.n_kept < s.n_j else -1
+    if i >= 0:
+        s.rows.culprit = i
         return JOINTS_FAILED
     if code == DONE and opens_any(s):
-        code = reconsider(s, t, longest)
+        code = reconsider(s, longest)
     if code == DONE and undecided(s):
         copy_indices(s.tried, s.new_mode, s.n_c)
         copy(after(s.samples, 2 * s.n_c), s.new_direction, s.n_c)
-        code = look_on(s, t, longest)
+        code = look_on(s, longest)
         if code == DONE:
-            slide_as_now(s, after(s.samples, 2 * s.n_c))
-            tell_left(s, t)
+            add_what_is_now(s, after(s.samples, 2 * s.n_c))
     clear(s.doubt, s.n_r)
     copy(s.terms, s.samples, 2 * s.n_c)
     return code
 
 
-def look_on(s: Rubbing, t: float, longest: float) -> int:
+def look_on(s: Rubbing, longest: float) -> int:
     """The modes just after the base time, at which the forces leave some of them open; a status.
 
     A contact whose force begins at zero is decided by the first force that can be told from zero, unless another that
     is pressed now is no longer there, or slips: it does so later, as its own guard says, and decides about all anew.
     """
-    ahead = LOOK_AHEAD * longest
+    t, ahead = s.rows.t0, LOOK_AHEAD * longest
     while 0.0 < ahead <= longest:
         s.rows.culprit = -1
         code = adopt_modes(s)
@@ -207,36 +213,26 @@ def look_on(s: Rubbing, t: float, longest: float) -> int:
     return DONE if measure(s, t, s.y) else NOT_FINITE
 
 
-def slide_as_now(s: Rubbing, direction: Doubles) -> None:
-    """What begins to slide by the forces of the base state does so in their direction, whenever its load begins."""
+def add_what_is_now(s: Rubbing, direction: Doubles) -> None:
+    """Add what the base state says (`tried`, `direction`) to the modes a little later.
+
+    What begins to slide by its forces does so in their direction, whenever the load begins. What has just come to its
+    surface, is closed there, and leaves by a force that begins, is logged as closed; that it leaves logs `obey`.
+    """
     for c in range(s.n_c):
         if s.tried[c] == SLIDES and s.new_mode[c] == SLIDES:
             s.new_direction[c] = direction[c]
-
-
-def tell_left(s: Rubbing, t: float) -> None:
-    """Log as closed what has just come to its surface, is closed there (`tried`), and leaves by a force that begins.
-
-    That it leaves is logged by `obey`.
-    """
-    for c in range(s.n_c):
         if s.was_mode[c] == OPEN and s.tried[c] != OPEN and s.new_mode[c] == OPEN:
-            s.clock.log(t, c, 0.0, s.velocity[s.n_j + c], 0.0, STAYS_CLOSED)
+            s.rows.log(s.rows.t0, c, 0.0, s.velocity[s.n_j + c], 0.0, STAYS_CLOSED)
             s.was_mode[c] = SLIDES
 
 
-def obey_found(s: Rubbing) -> int:
-    """Obey the modes that `look_ahead` has found."""
-    code = obey(s, s.clock.t0)
-    return set_out(s, s.clock.t0) if code == DONE else code
-
-
-def set_out(s: Rubbing, t: float) -> int:
+def set_out(s: Rubbing) -> int:
     """The motion goes on with the modes at hand."""
     find_loose(s)
-    if not begin_guards(s, t):
+    if not begin_guards(s):
         return NOT_FINITE
     for c in range(s.n_c):
         s.touches[c] = 1 if s.mode[c] != OPEN else 0
-    keep_event(s.rows, t)
+    keep_event(s.rows, s.rows.t0)
     return DONE

@@ -100,7 +100,7 @@ def straying(s: Rubbing, a: Doubles, level: float) -> int:
 
 def straying_seen(s: Rubbing, t: float, level: float) -> int:
     """The same at the state `seen` of time t; -1 as well where that is not finite."""
-    return straying(s, after(s.dy, s.n_q), level) if know_rows(s, t, s.seen, s.dy) else -1
+    return straying(s, after(s.dy, s.n_q), level) if know_rows(s, t) else -1
 
 
 def strays(s: Rubbing, i: int, a: Doubles, least: float) -> bool:

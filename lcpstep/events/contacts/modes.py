@@ -238,11 +238,11 @@ def size_of_coupled(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
     return size
 
 
-def obey(s: Rubbing, t: float) -> int:
+def obey(s: Rubbing) -> int:
     """Take over the modes decided, and hold their rows; log what has changed."""
     code = adopt_modes(s)
     if code == DONE:
-        tell(s.rows, t)
+        tell(s.rows)
     return code
 
 

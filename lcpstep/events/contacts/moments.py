@@ -9,8 +9,9 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import SLIDES
-from lcpstep.events.contacts.guards import UNKNOWN, look, look_at_stage
+from lcpstep.events.contacts.guards import look, look_at_stage
 from lcpstep.events.contacts.state import GUARDS, Rubbing
+from lcpstep.events.hybrid.locate import UNKNOWN
 from lcpstep.events.rows.contacts import still
 from lcpstep.kernels.dop853 import STAGES
 from lcpstep.kernels.roundings import NOISE, RESOLUTION
@@ -39,7 +40,7 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
         if tau + change <= 0.0:  # of so short a way the polynomial knows more than secants
             break
         tau = min(tau + change, longest)
-    if not s.complete(s.clock.t0, tau):
+    if not s.complete(s.rows.t0, tau):
         return UNKNOWN
     if abs(change) <= NEAR * tau:
         tau = creep(s, g, tau, change, longest)
@@ -49,7 +50,7 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
 def jumps(s: Rubbing, g: int, tau: float) -> bool:
     """Whether guard g is far from zero where its slope says that it is zero: a force has jumped, or a belt."""
     least = still(s.rows, s.n_j + s.n_c + g // GUARDS) if of_sliding(s, g) else s.band[g]
-    return abs(s.value[g]) > least and abs(missing(s, g)) > NOISE * (abs(s.clock.t0) + tau)
+    return abs(s.value[g]) > least and abs(missing(s, g)) > NOISE * (abs(s.rows.t0) + tau)
 
 
 def close_in(s: Rubbing, g: int, tau: float, longest: float) -> float:
@@ -57,17 +58,17 @@ def close_in(s: Rubbing, g: int, tau: float, longest: float) -> float:
     s.bracket.begin(0.0, longest, True, tau)
     s.bracket.halve(s.value[g] >= 0.0)
     if look_after(s, s.bracket.b) and s.value[g] < 0.0:
-        while s.bracket.seek(2.0 * RESOLUTION * (abs(s.clock.t0) + s.bracket.b)):
+        while s.bracket.seek(2.0 * RESOLUTION * (abs(s.rows.t0) + s.bracket.b)):
             if not look_after(s, s.bracket.x):
                 return UNKNOWN
             s.bracket.halve(s.value[g] >= 0.0)
         tau = s.bracket.b
-    return tau if look_after(s, tau) and s.complete(s.clock.t0, tau) else UNKNOWN
+    return tau if look_after(s, tau) and s.complete(s.rows.t0, tau) else UNKNOWN
 
 
 def look_after(s: Rubbing, tau: float) -> bool:
     """A step of length tau, and all guards where it ends; False where a state is not finite."""
-    return s.step(s.clock.t0, tau) and look_at_stage(s, STAGES, s.clock.t0 + tau, s.y_new)
+    return s.step(s.rows.t0, tau) and look_at_stage(s, STAGES, s.rows.t0 + tau, s.y_new)
 
 
 def of_sliding(s: Rubbing, g: int) -> bool:
@@ -85,7 +86,7 @@ def creep(s: Rubbing, g: int, tau: float, change: float, longest: float) -> floa
 
     By less than a late time can tell, too: the clock keeps what rounding takes from it.
     """
-    t, f, gone = s.clock.t0 + tau, after(s.K, STAGES * s.n), 0.0
+    t, f, gone = s.rows.t0 + tau, after(s.K, STAGES * s.n), 0.0
     if abs(change) <= 2.0 * RESOLUTION * tau:
         return tau
     copy(s.y_stage, s.y_new, s.n)

@@ -51,7 +51,7 @@ def pass_by(s: Rubbing) -> None:
             s.terms[c], s.parting[c] = -u, 1
 
 
-def let_go(s: Rubbing, t: float) -> bool:
+def let_go(s: Rubbing) -> bool:
     """Open the contacts that the forces open, where one has landed at this instant; False where not finite."""
     landed = False
     for c in range(s.n_c):
@@ -59,13 +59,13 @@ def let_go(s: Rubbing, t: float) -> bool:
         landed = landed or (new and s.instant[c] > 0.0)
     if not landed:
         return True
-    if not measure(s, t, s.y):
+    if not measure(s, s.rows.t0, s.y):
         return False
     if decide(s) == DONE:
         for c in range(s.n_c):
             if s.mode[c] != OPEN and s.new_mode[c] == OPEN:
                 s.mode[c], s.parting[c] = OPEN, 1
-    return renew_friction(s, t)
+    return renew_friction(s)
 
 
 def rejoin(s: Rubbing) -> None:
@@ -76,20 +76,18 @@ def rejoin(s: Rubbing) -> None:
         s.parting[c] = 0
 
 
-def rebound(s: Rubbing, c: int) -> float:
-    """By the law, r u- of a contact that has come to its surface at a corner, beyond which it may move away."""
-    if s.jumped[c] == 0.0 or s.in_turn:
-        return 0.0
-    return s.model.restitution[c] * min(s.velocity[s.n_j + c] - s.jumped[c], 0.0)
-
-
 def approaches(s: Rubbing) -> bool:
-    """Whether a contact on its surface approaches it; one there without speed to rounding is closed."""
+    """Whether a contact on its surface approaches it; one there without speed to rounding is closed.
+
+    By the law u + r u- < 0 of what has come to its surface at a corner, beyond which it may move away.
+    """
     hit = False
     for c in range(s.n_c):
         u = s.velocity[s.n_j + c]
         if s.mode[c] == OPEN and s.touches[c] == 1:
-            strikes = u + rebound(s, c) < -s.terms[c]
+            at_corner = s.jumped[c] != 0.0 and not s.in_turn
+            back = s.model.restitution[c] * min(u - s.jumped[c], 0.0) if at_corner else 0.0
+            strikes = u + back < -s.terms[c]
             hit = hit or strikes
             if abs(u) <= s.terms[c] and s.parting[c] == 0 and not strikes:
                 s.mode[c] = SLIDES

@@ -18,19 +18,19 @@ from lcpstep.pointers import abs
 
 def take_over(s: Rubbing, t: float, tau: float) -> None:
     """The motion over the first `tau` of the step is final: its impulses, the states asked for, the next base."""
-    s.clock.tally.steps += 1
+    s.rows.tally.steps += 1
     pressed = 0.0
     clear(s.counted, s.n_r)
-    while s.clock.record.wants(t, t >= s.clock.t_end):
-        wanted = s.clock.record.awaited() - s.clock.t0
+    while s.rows.record.wants(t, t >= s.rows.t_end):
+        wanted = s.rows.record.awaited() - s.rows.t0
         press_between(s, pressed, wanted)
         pressed = wanted
         keep_wanted(s, wanted)
     if tau > 0.0:
         press_rest(s, pressed, tau)
-        s.clock.record.store(s.F, s.length)
+        s.rows.record.store(s.F, s.length)
         copy(s.y, s.y_new, 2 * s.n_q)
-    s.clock.start_at(t)
+    s.rows.start_at(t)
     if tau > 0.0 and s.rows.n_held > 0:
         project(s.rows, t, s.y)
 
@@ -41,7 +41,7 @@ def keep_wanted(s: Rubbing, tau: float) -> None:
     if tau > 0.0:
         s.at(tau / s.length, s.seen)
         if s.rows.n_held > 0:
-            project(s.rows, s.clock.record.awaited(), s.seen)
+            project(s.rows, s.rows.record.awaited(), s.seen)
     keep_awaited(s.rows, s.seen)
 
 
@@ -52,7 +52,7 @@ def press_between(s: Rubbing, a: float, b: float) -> None:
     for k in range(s.n_nodes):
         tau = a + s.nodes[k] * (b - a)
         s.at(tau / s.length, s.seen)
-        right_hand_side(s, s.clock.t0 + tau, s.seen, s.dy)
+        right_hand_side(s, s.rows.t0 + tau, s.seen, s.dy)
         share = s.weights[k] * (b - a)
         for i in range(s.n_r):
             add_impulse(s.rows, i, share * s.multiplier[i])

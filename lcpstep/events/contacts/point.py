@@ -37,7 +37,7 @@ def modes(s: Rubbing) -> tuple[Any, Any]:
 @cython.ccall
 def settle(s: Rubbing, t: float, x: Any, closed: Any) -> int:
     """Find and hold the modes of the contacts that are closed at the state x = (q, v); a status."""
-    s.clock.find_corners(t)
+    s.rows.find_corners(t)
     copy(s.y, doubles(x), 2 * s.n_q)
     for c in range(s.n_c):
         s.mode[c] = SLIDES if closed[c] else OPEN
@@ -52,7 +52,7 @@ def settle(s: Rubbing, t: float, x: Any, closed: Any) -> int:
 @cython.ccall
 def hold(s: Rubbing, t: float, x: Any, mode: Any, direction: Any) -> bool:
     """Hold the rows of these modes from the state x = (q, v) on; False where no forces do."""
-    s.clock.find_corners(t)
+    s.rows.find_corners(t)
     for c in range(s.n_c):
         s.mode[c], s.direction[c] = int(mode[c]), direction[c]
         s.loaded[c] = 1 if s.mode[c] != OPEN else 0
@@ -97,8 +97,8 @@ def pulls(s: Rubbing) -> Any:
 @cython.ccall
 def rows(s: Rubbing, t: float, x: Any) -> Any:
     """Rows R, M^-1 R^T (n_r, n_q) of joints, normals and tangents, rates and gaps (n_r,); x = (q, v)."""
-    if s.clock.low > s.clock.high:  # nothing has been held yet
-        s.clock.find_corners(t)
+    if s.rows.low > s.rows.high:  # nothing has been held yet
+        s.rows.find_corners(t)
     measure(s, t, doubles(x))
     n, r = s.n_q, s.n_r
     R, MR = np.zeros((2, r, n))

@@ -56,7 +56,7 @@ class ContactRun(Integrated):
 
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
         s = self.system = self.start(scene, method)
-        super().__init__(method, scene, kept, s.clock, s, s.scan_length, s.n_r, False)
+        super().__init__(method, scene, kept, s.rows, s, s.scan_length, s.n_r, False)
         self.course = Course(s)
 
     def start(self, scene: Scene, method: Any) -> Any:

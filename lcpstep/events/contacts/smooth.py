@@ -34,4 +34,4 @@ class Smooth(Rubbing):
     def straying_at(self, place: float, h: float, level: float) -> int:
         """The first contact of which a row has left its rest at that fraction of the step, or -1: by dense output."""
         self.at(place, self.seen)
-        return straying_seen(self, self.clock.t0 + place * h, level)
+        return straying_seen(self, self.rows.t0 + place * h, level)

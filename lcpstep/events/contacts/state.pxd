@@ -1,13 +1,11 @@
 from lcpstep.events.hybrid.state cimport Motion
 from lcpstep.kernels.bracket cimport Bracket
-from lcpstep.kernels.clock cimport Clock
 from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.kernels.model cimport Model
 
 cdef class Rubbing(RungeKutta):
     cdef object rule, table, given, marks, looks, arms
     cdef readonly Contacts rows
-    cdef readonly Clock clock
     cdef readonly Model model
     cdef readonly ContactProblem problem
     cdef readonly Coefficients coefficients
@@ -27,7 +25,7 @@ cdef class Rubbing(RungeKutta):
     cdef Doubles lands, height, rise, bend, speed, jumped, stray
     cdef Bracket bracket
     cdef readonly Motion watch
-    cdef bint hopping, watched, flying
+    cdef bint hopping, flying
     cdef Py_ssize_t guards
     cdef Indices mode, was_mode, new_mode, loaded, new_loaded, may_stick, touches, parting, tried, hops, carried, leader
     cdef Doubles value, band, samples

@@ -29,7 +29,7 @@ GUARDS = 3
 class Rubbing(RungeKutta):
     """A motion under way; its field, that of the modes at hand, is given by `smooth`.
 
-    rows, clock, model           the contacts as rows, which are the clock as well; the system
+    rows, model                  the contacts as rows, which are the clock as well; the system
     scan, scan_length            the polynomials of guards; longest interval between looks at them
     constant                     M, the rows and coefficients of friction never change
     plain                        no function of the user's is in it
@@ -55,7 +55,7 @@ class Rubbing(RungeKutta):
     carried, speed : (n_c,)      `height` is known better than by q at the base to come; the velocity there
     bracket                      in which times are sought: that of `scan`
     flying                       no contact is closed: their gaps tell all
-    watch, watched               what looks at the guards of modes, see `switching`; whether the system has any
+    watch                        what looks at the guards of modes, see `switching`; None where the system has none
     guards                       LOOKED, or since then a mode has begun (ENTERED), or velocities have jumped (JUMPED)
     loose, stray : (n_c,)        how many contacts have a row at rest that is not held; how large an acceleration of
         such a row has been, see `loose`
@@ -88,7 +88,7 @@ class Rubbing(RungeKutta):
         contacts = rows.model
         n, n_c, n_j, r = rows.n_q, rows.n_c, rows.n_j, rows.n_r
         RungeKutta.__init__(self, 2 * n, n, rows.rtol, rows.atol)
-        self.rows, self.clock, self.model = rows, rows, contacts
+        self.rows, self.model = rows, contacts
         self.n_q, self.n_c, self.n_j, self.n_t, self.n_r = n, n_c, n_j, rows.n_t, r
         self.scan_length = scan_length
         self.constant = rows.fixed and not coefficients.varies
@@ -113,7 +113,7 @@ class Rubbing(RungeKutta):
         self.place_marks(indices(self.marks))
         self.paced, self.loose = 0, 0
         self.bracket, self.hopping = self.scan.bracket, False
-        self.watch, self.watched, self.guards = None, False, ENTERED
+        self.watch, self.guards = None, ENTERED
         self.flying = False
 
     def share_rows(self) -> None:
@@ -159,9 +159,9 @@ class Rubbing(RungeKutta):
         """Go on up to the first event, no further than a step; a status. Every way to step has its own."""
         return NOT_FINITE
 
-    def moment(self) -> float:
+    def no_time(self) -> float:
         """How short a stretch of motion from the base on is no time; at time zero nothing is rounding of it."""
-        return float(max(NO_TIME * self.scan_length, self.clock.untold(0.0)))
+        return float(max(NO_TIME * self.scan_length, self.rows.untold(0.0)))
 
     def straying_at(self, place: float, h: float, level: float) -> int:
         """`loose.straying` at that fraction of the step of size h; -1 where a state is not finite. As `proceed`."""

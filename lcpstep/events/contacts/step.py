@@ -7,14 +7,15 @@ import cython
 from lcpstep.events.codes import LEANS, NO_FORCES, OPEN, STICKS, SWITCH
 from lcpstep.events.contacts.arrival import arrive, find_standing, of_force, tells
 from lcpstep.events.contacts.equations import measure
-from lcpstep.events.contacts.guards import UNKNOWN, first_event, look
-from lcpstep.events.contacts.hops import carry, find_landings, interrupt, shortest_hop
+from lcpstep.events.contacts.guards import first_event, look
+from lcpstep.events.contacts.hops import carry, interrupt, landing, shortest_hop
 from lcpstep.events.contacts.loose import first_stray
 from lcpstep.events.contacts.modes import decide, undecided
 from lcpstep.events.contacts.moments import jumps, locate, of_sliding
 from lcpstep.events.contacts.passing import take_over
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.contacts.switching import reach_guard, watch
+from lcpstep.events.hybrid.locate import UNKNOWN
 from lcpstep.events.rows.contacts import hold_modes, rubs
 from lcpstep.events.rows.jumps import breaks
 from lcpstep.events.rows.keep import keep
@@ -41,7 +42,7 @@ def step(s: Rubbing) -> int:
 
 def stride(s: Rubbing) -> int:
     """The same; NOT_FINITE where no forces hold the row of `culprit`."""
-    t0, border = s.clock.t0, s.clock.border()
+    t0, border = s.rows.t0, s.rows.border()
     if s.rows.n_held != s.paced:
         change_pace(s)
     code = s.take_step(t0, min(min(border - t0, s.scan_length), LONGEST * shortest_hop(s)), s.scan_length)
@@ -50,75 +51,72 @@ def stride(s: Rubbing) -> int:
     mark_resting(s)
     if breaks(s.rows, s, s.length, False):
         return DONE
-    code = find(s, s.length)
+    code = find(s)
     if code != DONE:
         return code
-    if s.watched and s.watch.culprit >= 0:
-        return complete_to_guard(s, s.length)
-    if s.guard >= 0:
-        return complete_to_event(s, s.length)
-    return complete(s, s.length)
+    if s.watch is not None and s.watch.culprit >= 0:
+        return complete_to_guard(s)
+    return complete_to_event(s) if s.guard >= 0 else complete(s)
 
 
-def find(s: Rubbing, h: float) -> int:
-    """The first event within the step of size h just made: `guard`, or `watch.culprit`, if any; a status.
+def find(s: Rubbing) -> int:
+    """The first event within the step just made: `guard`, or `watch.culprit`, if any; a status.
 
-    When, as a fraction of h, into `found`.
+    When, as a fraction of the step, into `found`; when hops land, into `lands`.
     """
-    find_landings(s, h)
+    h = s.length
+    for c in range(s.n_c if s.hopping else 0):
+        s.lands[c] = landing(s, c, h)
     if first_event(s, h) == UNKNOWN:
         return NOT_FINITE
     if s.shown <= 1.0:
         first_stray(s, h, s.kept_to, min(s.shown, s.found))
-    return watch(s, h, 1.0 if s.guard < 0 else s.found) if s.watched else DONE
+    return watch(s, h, 1.0 if s.guard < 0 else s.found) if s.watch is not None else DONE
 
 
-def complete(s: Rubbing, h: float) -> int:
-    """Take over the step of size h, in which nothing happens; a status."""
-    border = s.clock.border()
+def complete(s: Rubbing) -> int:
+    """Take over the step, in which nothing happens; a status."""
+    h, border = s.length, s.rows.border()
     interrupt(s, -1, h)
-    take_over(s, border if h >= border - s.clock.t0 else s.clock.after(h), h)
+    take_over(s, border if h >= border - s.rows.t0 else s.rows.after(h), h)
     if s.hopping:
-        if not look(s, s.clock.t0, s.y):
+        if not look(s, s.rows.t0, s.y):
             return NOT_FINITE
         carry(s)
-    if s.clock.record.is_due(s.clock.tally.steps):
-        keep(s.rows, s.clock.t0, s.y)
+    if s.rows.record.is_due(s.rows.tally.steps):
+        keep(s.rows, s.rows.t0, s.y)
     return DONE
 
 
-def complete_to_event(s: Rubbing, h: float) -> int:
+def complete_to_event(s: Rubbing) -> int:
     """The step up to the guard found within it, and what comes next; a status."""
-    g, border, code = s.guard, s.clock.border(), DONE
+    g, h, border, code = s.guard, s.length, s.rows.border(), DONE
     if of_force(s, g):
         code = look_ahead(s, h)
         if code != DONE and not (s.yields and code == PAINLEVE_INCONSISTENT):
             return code
-    longest = border - s.clock.t0
-    lands = g % GUARDS == 0 and s.lands[g // GUARDS] >= 0.0  # a hop that its acceleration has told of
-    tau = land(s, g, longest) if lands else locate(s, g, h, longest)
+    longest = border - s.rows.t0
+    if g % GUARDS == 0 and s.lands[g // GUARDS] >= 0.0:  # a hop that its acceleration has told of
+        tau = min(s.lands[g // GUARDS], longest)
+        tau = tau if s.step(s.rows.t0, tau) and s.complete(s.rows.t0, tau) else UNKNOWN
+    else:
+        tau = locate(s, g, h, longest)
     if tau == UNKNOWN:
         return NOT_FINITE
     interrupt(s, g // GUARDS, tau)
-    take_over(s, min(s.clock.after(tau), border), tau)
+    take_over(s, min(s.rows.after(tau), border), tau)
     if code != DONE or (tau > 0.0 and of_sliding(s, g) and jumps(s, g, tau)):
         return code  # a jump whose polynomial has been there, not the velocity
     return arrive(s, g)
 
 
-def complete_to_guard(s: Rubbing, h: float) -> int:
+def complete_to_guard(s: Rubbing) -> int:
     """The step up to the guard of modes that acts; a status."""
-    tau = reach_guard(s, h)
+    tau = reach_guard(s, s.length)
     interrupt(s, -1, tau)
-    take_over(s, min(s.clock.after(tau), s.clock.border()), tau)
+    take_over(s, min(s.rows.after(tau), s.rows.border()), tau)
     s.rows.next = SWITCH
     return DONE
-
-
-def land(s: Rubbing, g: int, longest: float) -> float:
-    """Time from now at which that hop ends; a step of this length is left, complete."""
-    tau = min(s.lands[g // GUARDS], longest)
-    return tau if s.step(s.clock.t0, tau) and s.complete(s.clock.t0, tau) else UNKNOWN
 
 
 def mark_resting(s: Rubbing) -> None:
@@ -146,7 +144,7 @@ def look_ahead(s: Rubbing, h: float) -> int:
     ahead = LOOK_AHEAD + s.delay
     while True:
         s.at(s.found + ahead, s.seen)
-        if not measure(s, s.clock.t0 + (s.found + ahead) * h, s.seen):
+        if not measure(s, s.rows.t0 + (s.found + ahead) * h, s.seen):
             return NOT_FINITE
         find_standing(s)
         code = decide(s)

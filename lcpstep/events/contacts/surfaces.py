@@ -1,4 +1,4 @@
-"""Positions on the surfaces that contacts have come to, and joints that come apart, as kernels."""
+"""Positions on the surfaces that contacts have come to, as kernels."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from lcpstep.events.contacts.equations import measure, share_left
 from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
-from lcpstep.events.rows.held import contradiction, parted
-from lcpstep.kernels.dynamics import gap_rates, gaps
+from lcpstep.kernels.dynamics import gap_rates
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import clear, largest, product
 from lcpstep.pointers import Doubles, abs, after, max, min
@@ -22,23 +21,6 @@ SURE = 0.5  # of a gap: by how much its slope may change over Newton's step to z
 LATE = 8.0  # roundings of a time: what two events must be apart to be told from one
 
 
-def contradict(s: Rubbing) -> bool:
-    """Whether joints left out ask for another acceleration than the joints held leave, in `a`; `culprit`."""
-    return is_culprit(s, contradiction(s.rows, s.a))
-
-
-def come_apart(s: Rubbing) -> bool:
-    """Whether a joint left out is no longer closed at the base state; `culprit`."""
-    gaps(s.rows.joints, s.clock.t0, s.q, s.v, s.gap)
-    return is_culprit(s, parted(s.rows, s.gap, s.q))
-
-
-def is_culprit(s: Rubbing, i: int) -> bool:
-    """Note a joint that a failure is about, unless it is none, -1; whether it is one."""
-    s.rows.culprit = i if i >= 0 else s.rows.culprit
-    return i >= 0
-
-
 def lift(s: Rubbing, c: int) -> bool:
     """Put q onto the surface of contact c, which it misses by no more than the tolerance; False where there is none.
 
@@ -48,7 +30,7 @@ def lift(s: Rubbing, c: int) -> bool:
     """
     i, g, u, n = s.n_j + c, s.gap[s.n_j + c], s.velocity[s.n_j + c], s.n_q
     way, speed, straight = s.v, u, True
-    if s.rate[i] != 0.0 or u >= 0.0 or abs(g) > -s.clock.untold(s.length) * u:
+    if s.rate[i] != 0.0 or u >= 0.0 or abs(g) > -s.rows.untold(s.length) * u:
         way, speed, straight = after(s.MR, i * n), s.W[i * s.n_r + i], s.model.flat
         if s.rows.n_held > 0:
             u = gives(s, i)
@@ -69,10 +51,10 @@ def is_known(s: Rubbing, c: int, way: Doubles, speed: float) -> bool:
 
     Meanwhile the body goes on with its velocity, and is pushed along `way` by the obstacle that closes in.
     """
-    moment, pushed = s.clock.untold(s.length), s.rate[s.n_j + c] / speed
+    moment, pushed = s.rows.untold(s.length), s.rate[s.n_j + c] / speed
     for j in range(s.n_q):
         s.seen[j] = s.q[j] + moment * (s.v[j] - pushed * way[j])
-    gap_rates(s.model, s.clock.t0, s.seen, s.v, s.rows.G, s.rows.near)
+    gap_rates(s.model, s.rows.t0, s.seen, s.v, s.rows.G, s.rows.near)
     return abs(product(s.rows.G, way, c, s.n_q) - speed) <= SURE * abs(speed)
 
 
@@ -83,7 +65,7 @@ def has_room(s: Rubbing, c: int, way: Doubles, speed: float, g: float) -> bool:
     bends downwards, as in the middle of a bowl, has none if g < 0, and if g > 0 rises by no more than g. Source of h:
     L. Kantorovich, Functional analysis and applied mathematics, Uspekhi Matematicheskikh Nauk 3 (1948).
     """
-    gap_rates(s.model, s.clock.t0, s.q, s.v, s.rows.G, s.rows.near)
+    gap_rates(s.model, s.rows.t0, s.q, s.v, s.rows.G, s.rows.near)
     bend = product(s.rows.G, way, c, s.n_q) - speed
     if abs(bend) <= SURE * abs(speed):
         return True
@@ -102,7 +84,7 @@ def come_to_rest(s: Rubbing) -> bool:
     if left == 0.0 or left > GONE * s.atol:
         return True
     clear(s.y, 2 * s.n_q)
-    if not measure(s, s.clock.t0, s.y):
+    if not measure(s, s.rows.t0, s.y):
         return False
     find_touching(s)
     return True
@@ -114,7 +96,7 @@ def touching(s: Rubbing, c: int, share: float) -> float:
     Late times tell no better which of two gaps that close together, as at two corners of a block, was first.
     share : of the tolerance that counts, see `share_left`
     """
-    late = LATE * RESOLUTION * abs(s.clock.t0) * abs(s.velocity[s.n_j + c])
+    late = LATE * RESOLUTION * abs(s.rows.t0) * abs(s.velocity[s.n_j + c])
     return s.rows.rounding_of_gap(c) + TOGETHER * share * gap_tolerance(s.rows, c) + late
 
 
@@ -146,7 +128,7 @@ def find_coming(s: Rubbing, c: int) -> None:
     these are struck at once. After a hop the time is known better: to the same share of the hop's length.
     """
     u, share = s.velocity[s.n_j + c], share_left(s)
-    moment = min(touching(s, c, share) / -u, TOGETHER * (s.clock.t0 - s.rows.struck[c])) if u < 0.0 else 0.0
+    moment = min(touching(s, c, share) / -u, TOGETHER * (s.rows.t0 - s.rows.struck[c])) if u < 0.0 else 0.0
     for d in range(s.n_c):
         way = min(-s.velocity[s.n_j + d] * moment, share * gap_tolerance(s.rows, d))
         if s.gap[s.n_j + d] <= way:

@@ -45,7 +45,7 @@ class Watched(Motion):
     @cython.ccall
     def share(self, s: Rubbing) -> None:
         """Look at the guards of modes along that motion, on its numbers: states and stages are those of s."""
-        self.rubbing, self.state, s.watch, s.watched = s, s.state, self, True
+        self.rubbing, self.state, s.watch = s, s.state, self
         self.y, self.y_new, self.y_stage, self.first, self.K, self.F = (
             s.y, s.y_new, s.y_stage, s.first, s.K, s.F,
         )  # fmt: skip
@@ -64,7 +64,7 @@ def watch(s: Rubbing, h: float, end: float) -> int:
     s.watch.culprit = -1
     if not end > 0.0:
         return DONE
-    s.watch.now, s.watch.t_end = s.clock.t0, s.clock.border()
+    s.watch.now, s.watch.t_end = s.rows.t0, s.rows.border()
     k = find(s.watch, h, end)
     if k == UNKNOWN:
         return NOT_FINITE
@@ -72,7 +72,7 @@ def watch(s: Rubbing, h: float, end: float) -> int:
         return DONE
     s.watch.culprit, s.watch.armed[k] = k, s.watch.was_armed
     if turns_back(s.watch):
-        s.watch.now = s.clock.t0 + s.watch.place * h
+        s.watch.now = s.rows.t0 + s.watch.place * h
         return NOT_TRANSVERSAL
     s.found = s.watch.place
     return DONE
@@ -82,13 +82,13 @@ def reach_guard(s: Rubbing, h: float) -> float:
     """The time from the base at which the guard found acts; the step is repeated up to it."""
     tau = locate(s.watch, h)
     if tau > 0.0:
-        s.complete(s.clock.t0, tau)
+        s.complete(s.rows.t0, tau)
     return tau
 
 
 def look_at_guards(s: Rubbing) -> None:
     """After the start of a mode, or a jump of velocities: a guard that is passed acts."""
-    s.watch.now = s.clock.t0
+    s.watch.now = s.rows.t0
     s.watch.culprit = enter(s.watch, -1, s.guards == JUMPED)
     s.guards = LOOKED
     if s.watch.culprit >= 0:
@@ -101,20 +101,20 @@ def switch(s: Rubbing) -> int:
     if s.watch.switches >= s.watch.log_capacity:
         s.rows.next = SWITCH
         return BUFFER_FULL
-    s.watch.now, s.guards = s.clock.t0, ENTERED
+    s.watch.now, s.guards = s.rows.t0, ENTERED
     leave(s.watch, k)
     s.model.mode = s.watch.mode
-    s.clock.tally.events += 1
+    s.rows.tally.events += 1
     if s.watch.stalled > MAX_STALLED:
         return ENDLESS_SWITCHING
-    if s.clock.tally.events > s.clock.tally.max_events:
+    if s.rows.tally.events > s.rows.tally.max_events:
         return TOO_MANY_EVENTS
     return place(s, s.watch.m.has_reset[k] != 0)
 
 
 def place(s: Rubbing, moved: bool) -> int:
     """Gaps and velocities of the contacts; those of a state that a reset has moved begin anew."""
-    if not measure(s, s.clock.t0, s.y):
+    if not measure(s, s.rows.t0, s.y):
         return NOT_FINITE
     for c in range(s.n_c):
         s.touches[c] = 1 if s.mode[c] != OPEN else 0

@@ -26,11 +26,6 @@ def log(s: Flight, t: float, kind: int, before: float, after: float, p: float) -
     s.last_event = t
 
 
-def sticks(u: float, alpha: float, t: float) -> bool:
-    """Whether a hop would be shorter than what the time t resolves; alpha <= 0."""
-    return u == 0.0 or 2.0 * u <= -alpha * UNSEEN * abs(t)
-
-
 def impact(s: Flight, u: float, jump: float = 0.0) -> None:
     """Newton's law u+ = -r u- now; then free flight, chattering or lasting contact.
 
@@ -52,7 +47,7 @@ def settle(s: Flight, u: float) -> None:
     s.g, s.u, s.alpha = 0.0, u, alpha
     if alpha > 0.0 or (alpha == 0.0 and u > 0.0):
         return
-    if sticks(u, alpha, t):
+    if u == 0.0 or 2.0 * u <= -alpha * UNSEEN * abs(t):  # a hop shorter than what the time resolves
         stick(s, t)
     elif r < 1.0:
         T = chatter_left(s, u, alpha)

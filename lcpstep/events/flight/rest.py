@@ -51,7 +51,9 @@ def first_release(s: Flight, a: float, alpha_a: float, b: float) -> float:
         if k == PROBES + 1 and not f_0 < f_1:
             break
         if k == PROBES + 1 and t_2 > s.border():
-            return last_release(s, t_0, f_0, t_1, f_1)
+            middle = 0.5 * (t_0 + t_1)
+            top, f_top = summit(s, middle, t_1 - middle, f_0, alpha_at(s, middle), f_1)
+            return alpha_root(s, t_0, f_0, top, f_top) if f_top > 0.0 else NONE
         f_2 = alpha_at(s, t_2)
         if k == 1 and f_2 <= f_1 and t_0 >= s.low:
             f_0 = alpha_at(s, t_0)
@@ -64,13 +66,6 @@ def first_release(s: Flight, a: float, alpha_a: float, b: float) -> float:
             return t_1 if f_1 >= 0.0 else alpha_root(s, t_1, f_1, t_2, f_2)
         t_0, f_0, t_1, f_1 = t_1, f_1, t_2, f_2
     return NONE
-
-
-def last_release(s: Flight, a: float, f_a: float, b: float, f_b: float) -> float:
-    """The same between the last two samples, not positive, of the motion."""
-    middle = 0.5 * (a + b)
-    top, f_top = summit(s, middle, b - middle, f_a, alpha_at(s, middle), f_b)
-    return alpha_root(s, a, f_a, top, f_top) if f_top > 0.0 else NONE
 
 
 def alpha_root(s: Flight, a: float, f_a: float, b: float, f_b: float) -> float:

@@ -51,7 +51,7 @@ def contact_forces(s: Mechanism) -> int:
     if s.n_members > 0:
         if solve_members(s):
             open_contacts(s)
-            unload(s, after(s.multiplier, s.n_j), s.loaded, s.n_c)
+            unload(s, after(s.multiplier, s.n_j), s.loaded)
         copy(s.a, s.a_free, s.n_q)
         hold_modes(s)
         constrain(s, s.a, s.bias)
@@ -111,7 +111,8 @@ def stands(s: Mechanism) -> bool:
         if s.multiplier[s.n_j + c] < -CHECKED * most and pulls(s, c):
             return False
         touches = s.mode[c] != OPEN or (s.gap[s.n_j + c] == 0.0 and s.velocity[s.n_j + c] == 0.0)
-        if touches and enters(s, c):
+        alpha = product(s.R, s.a, s.n_j + c, s.n_q) if touches else 0.0
+        if alpha < 0.0 and alpha < -PASSES * size_of_acceleration(s, s.n_j + c, s.a):
             return False
     return True
 
@@ -120,13 +121,6 @@ def pulls(s: Mechanism, c: int) -> bool:
     """Whether what contact c pulls with is more than rounding: of bodies that fall together it is all there is."""
     i = s.n_j + c
     return -s.multiplier[i] * s.D[i * s.n_r + i] > PASSES * size_of_acceleration(s, i, s.a)
-
-
-def enters(s: Mechanism, c: int) -> bool:
-    """Whether contact c accelerates into its surface, by more than rounding."""
-    i = s.n_j + c
-    alpha = product(s.R, s.a, i, s.n_q)
-    return alpha < 0.0 and alpha < -PASSES * size_of_acceleration(s, i, s.a)
 
 
 def open_contacts(s: Mechanism) -> None:

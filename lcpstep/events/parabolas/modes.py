@@ -183,7 +183,7 @@ def settle(s: Mechanism) -> int:
             return code
         if turn == n_c or not close_chatter(s):
             break
-    if tell(s, t):
+    if tell(s):
         polish(s)
     rebase(s, t)
     hand_on(s)

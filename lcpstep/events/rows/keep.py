@@ -68,9 +68,9 @@ def keep_event(s: Contacts, t: float) -> None:
         keep(s, t, s.q)
 
 
-def tell(s: Contacts, t: float) -> bool:
+def tell(s: Contacts) -> bool:
     """Log the contacts whose mode is another than when last told; whether one has closed."""
-    some = False
+    t, some = s.t0, False
     for c in range(s.n_c):
         was, now, i = s.was_mode[c], s.mode[c], s.n_j + c
         now = STICKS if now == LEANS else now

@@ -22,16 +22,16 @@ from lcpstep.kernels.vectors import add, clear, product
 from lcpstep.pointers import Doubles, Indices, after
 
 
-def unload(s: Rows, force: Doubles, loaded: Indices, n_c: int) -> None:
-    """Shift the forces of n_c contacts until those `loaded` are independent; shares of their rows must be known."""
-    while shift(s, force, loaded, n_c):  # each round takes the load from one contact
+def unload(s: Rows, force: Doubles, loaded: Indices) -> None:
+    """Shift the forces of contacts until those `loaded` are independent; shares of their rows must be known."""
+    while shift(s, force, loaded):  # each round takes the load from one contact
         pass
 
 
-def shift(s: Rows, force: Doubles, loaded: Indices, n_c: int) -> bool:
+def shift(s: Rows, force: Doubles, loaded: Indices) -> bool:
     """Take the load from one of the contacts that depend on each other; False where there are none."""
     hold_joints(s)
-    for c in range(n_c):
+    for c in range(s.n_c):
         k = s.n_held
         if loaded[c] == 1 and hold(s, s.n_j + c) and s.n_held == k:
             leaves = spread(s, c, force)

@@ -112,6 +112,6 @@ def leave_independent(s: Contacts, n_a: int, loaded: Indices) -> None:
             slides = s.may_stick[c] == 0 and rubs(s, c)
             s.share[s.n_j + c] = -s.direction[c] * s.mu[c] if slides else 0.0
             s.either[s.n_j + c] = 0
-    unload(s, s.curve, loaded, s.n_c)
+    unload(s, s.curve, loaded)
     for a in range(n_a):
         s.problem.impulse[a] = s.curve[s.problem.ids[a]]

@@ -30,8 +30,6 @@ from lcpstep.pointers import Doubles, abs, after, max, min
 from lcpstep.stepping.rubbing.let_go import hops, is_motion, rises, widen_until_decided
 from lcpstep.stepping.rubbing.strides import Strides, push_end_back
 
-NOWHERE = -1.0  # in place of a time: the guard does not act, its polynomial was wrong
-
 
 def note_base(s: Strides, t: float) -> bool:
     """Rates, forces and guards at the base state; False where one is not finite, or rows cannot be held."""
@@ -238,30 +236,30 @@ def interrupt(s: Strides, t: float, tau: float) -> None:
     for c in range(s.n_c):
         g, half = GUARDS * c, 0.5 * s.begin_bend[c]
         rises = hops(s, c) and half >= 0.0 and is_low(s, c, tau)
-        goes_on = g != s.guard and t < s.clock.high and (rises or low_flight(s, g) > tau)
+        goes_on = g != s.guard and t < s.rows.high and (rises or low_flight(s, g) > tau)
         s.height[c] = s.height[c] + tau * (s.begin_slope[g] + tau * half) if goes_on else 0.0
         s.carried[c] = 1 if s.height[c] > 0.0 else 0
 
 
 def locate(s: Strides, g: int, h: float) -> float:
-    """Time from now at which guard g acts, the step of that length being the last one made; or NOWHERE.
+    """Time from now at which guard g acts, the step of that length being the last one made; NONE: not at all.
 
     One that begins within its band, and below zero, acts where it is as far again; a force whose modes have been
     decided for longer, by a look ahead, where it is past its band.
     """
-    known = s.clock.t0 < s.decided and not is_motion(s, g)
+    known = s.rows.t0 < s.decided and not is_motion(s, g)
     zero = 0.0 if s.armed[g] == 1 else min(-s.band[g] if known else 0.0, 2.0 * s.begin_value[g])
     tau, slope, crossed = s.found * h, s.slope, s.end_value[g] < zero
     if tau <= 0.0:
         return 0.0
     low = low_flight(s, g)
     if low > 0.0:
-        return low if look_after(s, low) else NOWHERE
+        return low if look_after(s, low) else NONE
     s.bracket.begin(0.0, h, True, tau)
-    while s.bracket.seek(2.0 * RESOLUTION * (abs(s.clock.t0) + tau)):
+    while s.bracket.seek(2.0 * RESOLUTION * (abs(s.rows.t0) + tau)):
         tau = s.bracket.x  # the step of that length is the motion taken
         if not look_after(s, tau):
-            return NOWHERE
+            return NONE
         value = s.value[g] - zero
         crossed = crossed or value < 0.0 or (value == 0.0 and s.armed[g] == 1)
         if s.bracket.looks > 1 and value != s.bracket.value:
@@ -270,12 +268,12 @@ def locate(s: Strides, g: int, h: float) -> float:
         if not crossed and tau + s.bracket.step >= h:  # what has come so near turns back before the end
             tau = h
             if not look_after(s, tau):
-                return NOWHERE
+                return NONE
             break
     acts = crossed or (s.value[g] <= s.band[g] and s.armed[g] == 1)
-    return tau if acts and not rises(s, g) else NOWHERE
+    return tau if acts and not rises(s, g) else NONE
 
 
 def look_after(s: Strides, tau: float) -> bool:
     """A step of length tau, and all guards where it ends; False where there is none, or one is not finite."""
-    return s.step(s.clock.t0, tau) and read_with_rates(s, s.clock.t0 + tau, s.y_new)
+    return s.step(s.rows.t0, tau) and read_with_rates(s, s.rows.t0 + tau, s.y_new)

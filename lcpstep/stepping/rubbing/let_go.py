@@ -55,5 +55,5 @@ def widen_until_decided(s: Strides, g: int, h: float) -> None:
         if abs(first) > s.terms[c]:
             return
         first, last, reach = s.begin_bend[c], s.end_bend[c], h * h
-    if first < 0.0 < last and -first * h <= (last - first) * (s.decided - s.clock.t0):
+    if first < 0.0 < last and -first * h <= (last - first) * (s.decided - s.rows.t0):
         s.band[g] = max(s.band[g], -first * reach)

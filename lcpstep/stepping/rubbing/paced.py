@@ -57,9 +57,9 @@ def pace(s: Strides, t: float, longest: float) -> int:
         if error <= allowed:
             break
         if h <= 4.0 * RESOLUTION * max(abs(t), s.span) or s.tolerance < ROUNDED:
-            if not error < inf or s.tolerance < ROUNDED or t + h >= s.clock.high:
+            if not error < inf or s.tolerance < ROUNDED or t + h >= s.rows.high:
                 return why(s, error)
-            s.clock.break_at(t + h)
+            s.rows.break_at(t + h)
             s.length = 0.0
             return DONE
         if steep and leaps(s, h):

@@ -23,8 +23,8 @@ class RubbingSteps(Strides):
 
         Accelerations are those of the velocity on the rows held: beside it rows that depend on these seem to leave.
         """
-        t = self.clock.t0 + place * h
-        if not self.step(self.clock.t0, place * h):
+        t = self.rows.t0 + place * h
+        if not self.step(self.rows.t0, place * h):
             return -1
         copy(self.seen, self.y_new, self.n)
         push_end_back(self, after(self.seen, self.n_q))

@@ -15,6 +15,7 @@ from lcpstep.events.contacts.moments import of_sliding
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.contacts.step import mark_resting
 from lcpstep.events.contacts.surfaces import FREE
+from lcpstep.events.hybrid.roots import NONE
 from lcpstep.events.rows.chatter import moves
 from lcpstep.events.rows.contacts import add_impulse, hold_modes, still
 from lcpstep.events.rows.equations import list_gaps, respond_to
@@ -27,7 +28,6 @@ from lcpstep.kernels.status import DONE, NOT_FINITE, PAINLEVE_INCONSISTENT, PROJ
 from lcpstep.kernels.vectors import add, copy, product
 from lcpstep.pointers import abs, after, max, min
 from lcpstep.stepping.rubbing.found import (
-    NOWHERE,
     arm,
     first_event,
     hides,
@@ -49,12 +49,12 @@ TORN = -2  # in place of a guard
 
 def stride(s: Strides) -> int:
     """What is left of the step, up to the first event within it; what comes next into `next`. A status."""
-    t0, goal = s.clock.t0, s.goal(s.clock.tally.steps)
+    t0, goal = s.rows.t0, s.goal(s.rows.tally.steps)
     if goal <= t0:
         end_step(s)
         return DONE
     s.rows.culprit = -1
-    border = min(goal, s.clock.high)
+    border = min(goal, s.rows.high)
     h = border - t0
     if not s.going and not note_base(s, t0):
         return failed(s)
@@ -64,7 +64,7 @@ def stride(s: Strides) -> int:
         return code
     if s.length < h:
         h = s.length
-        border = s.clock.after(h)
+        border = s.rows.after(h)
         goal = border if s.tolerance > 0.0 else goal
     g, tau = s.guard, s.tau
     if g < 0:
@@ -73,10 +73,10 @@ def stride(s: Strides) -> int:
         arrive_with(s, border)
         if border >= goal:
             end_step(s)
-        elif border < s.clock.high:
+        elif border < s.rows.high:
             keep_event(s.rows, border)
         return DONE
-    if tau == NOWHERE:
+    if tau == NONE:
         return pass_by(s, s.found * h)
     if of_force(s, g):
         code = look_ahead(s, g // GUARDS, h, tau)
@@ -84,7 +84,7 @@ def stride(s: Strides) -> int:
             return code
         if tau > 0.0 and not s.step(t0, tau):
             return failed(s)
-    take_over(s, border if tau >= h else min(s.clock.after(tau), border), tau)
+    take_over(s, border if tau >= h else min(s.rows.after(tau), border), tau)
     return arrive(s, g)
 
 
@@ -105,17 +105,17 @@ def search(s: Strides, t: float, h: float) -> int:
         if h == 0.0 or breaks(s.rows, s, h, True):
             s.guard = TORN
             return DONE
-        s.tau = locate(s, s.guard, h) if first_event(s, h) >= 0 else NOWHERE
-        if s.loose > 0 and first_stray(s, h, 0.0, 1.0 if s.tau == NOWHERE else s.tau / h):
+        s.tau = locate(s, s.guard, h) if first_event(s, h) >= 0 else NONE
+        if s.loose > 0 and first_stray(s, h, 0.0, 1.0 if s.tau == NONE else s.tau / h):
             s.tau = s.found * h
             if s.tau > 0.0:
                 look_after(s, s.tau)
-        if s.tau != NOWHERE and turns_at_once(s, s.guard):
-            s.clock.break_at(t + s.tau)
+        if s.tau != NONE and turns_at_once(s, s.guard):
+            s.rows.break_at(t + s.tau)
             s.guard = TORN
             return DONE
-        seen = s.tau != NOWHERE or (s.guard >= 0 and s.found >= 0.5) or (s.guard < 0 and not hides(s, t, h))
-        if seen or h <= s.moment():
+        seen = s.tau != NONE or (s.guard >= 0 and s.found >= 0.5) or (s.guard < 0 and not hides(s, t, h))
+        if seen or h <= s.no_time():
             return DONE
         h *= 0.5
 
@@ -125,7 +125,7 @@ def turns_at_once(s: Strides, g: int) -> bool:
     if not of_sliding(s, g):
         return False
     none = still(s.rows, s.n_j + s.n_c + g // GUARDS)
-    rounding = NOISE * (abs(s.clock.t0) + s.tau) * abs(s.begin_slope[g])
+    rounding = NOISE * (abs(s.rows.t0) + s.tau) * abs(s.begin_slope[g])
     return s.begin_value[g] >= -none and abs(s.value[g]) > max(none, rounding)
 
 
@@ -146,16 +146,16 @@ def failed(s: Strides) -> int:
 
 def pass_by(s: Strides, tau: float) -> int:
     """Go on to where an event was expected that there is none of, and look again from there."""
-    if not s.step(s.clock.t0, tau):
+    if not s.step(s.rows.t0, tau):
         return failed(s)
-    take_over(s, s.clock.after(tau), tau)
-    keep_event(s.rows, s.clock.t0)
+    take_over(s, s.rows.after(tau), tau)
+    keep_event(s.rows, s.rows.t0)
     return DONE
 
 
 def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
     """The modes just after the force of contact c has left its cone, or turned to pulling; a status."""
-    t0, ahead = s.clock.t0, LOOK_AHEAD * h
+    t0, ahead = s.rows.t0, LOOK_AHEAD * h
     while True:
         if not s.step(t0, tau + ahead) or not measure(s, t0 + tau + ahead, s.y_new):
             return failed(s)
@@ -194,8 +194,8 @@ def take_over(s: Strides, t: float, tau: float) -> None:
         pressed = keep_between(s, t, tau)
         press(s, pressed, 1.0)
         copy(s.y, s.y_new, s.n)
-    s.clock.start_at(t)
-    while s.clock.record.wants(t, t >= s.clock.t_end):  # the end of the span
+    s.rows.start_at(t)
+    while s.rows.record.wants(t, t >= s.rows.t_end):  # the end of the span
         keep_awaited(s.rows, s.y)
 
 
@@ -216,20 +216,20 @@ def keep_between(s: Strides, t: float, tau: float) -> float:
     """
     pressed = 0.0
     s.length = tau
-    if s.clock.record.dense_size > 0 or s.clock.record.wants(t, False):
-        s.complete(s.clock.t0, tau)
-    while s.clock.record.wants(t, False):
-        place = (s.clock.record.awaited() - s.clock.t0) / tau
+    if s.rows.record.dense_size > 0 or s.rows.record.wants(t, False):
+        s.complete(s.rows.t0, tau)
+    while s.rows.record.wants(t, False):
+        place = (s.rows.record.awaited() - s.rows.t0) / tau
         copy(s.seen, s.y, s.n)
         if place > 0.0:
             press(s, pressed, place)
             s.at(place, s.seen)
             if s.rows.n_held > 0:
-                put_between(s, s.clock.record.awaited())
+                put_between(s, s.rows.record.awaited())
                 s.based = False
             pressed = place
         keep_awaited(s.rows, s.seen)
-    s.clock.record.store(s.F, s.length)
+    s.rows.record.store(s.F, s.length)
     return pressed
 
 
@@ -270,7 +270,7 @@ def arrive_with(s: Strides, t: float) -> None:
 
     Forces are those of before `put_end_back`, the velocity is that of after it.
     """
-    s.going = t < s.clock.high
+    s.going = t < s.rows.high
     if s.going:
         go_on_with(s)
         copy(s.begin_value, s.end_value, GUARDS * s.n_c)
@@ -280,9 +280,9 @@ def arrive_with(s: Strides, t: float) -> None:
 
 def end_step(s: Strides) -> None:
     """A step has ended; its state is kept where it is asked for."""
-    s.clock.tally.steps += 1
-    if s.clock.record.is_due(s.clock.tally.steps):
-        if s.clock.record.keeps_events():
-            keep_event(s.rows, s.clock.t0)
+    s.rows.tally.steps += 1
+    if s.rows.record.is_due(s.rows.tally.steps):
+        if s.rows.record.keeps_events():
+            keep_event(s.rows, s.rows.t0)
         else:
-            keep(s.rows, s.clock.t0, s.y)
+            keep(s.rows, s.rows.t0, s.y)

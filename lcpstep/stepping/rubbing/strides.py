@@ -66,7 +66,7 @@ class Strides(Smooth):
         self.tau, self.decided = 0.0, self.t_start
         self.going = self.based = False
         self.astray = -1
-        self.span = self.clock.t_end - self.t_start
+        self.span = self.rows.t_end - self.t_start
         self.size_q = self.size_v = 0.0
         g = GUARDS * self.n_c
         self.arrival = after(self.K, ARRIVAL * self.n)
@@ -116,10 +116,10 @@ class Strides(Smooth):
     def goal(self, steps: int) -> float:
         """The time at which the step after so many ends, at the latest."""
         if self.tolerance > 0.0:
-            return min(self.clock.t0 + min(self.h, self.scan_length), self.clock.t_end)
+            return min(self.rows.t0 + min(self.h, self.scan_length), self.rows.t_end)
         if steps + 1 >= self.n_steps:
-            return self.clock.t_end
-        return min(self.t_start + self.h * (steps + 1), self.clock.t_end)
+            return self.rows.t_end
+        return min(self.t_start + self.h * (steps + 1), self.rows.t_end)
 
 
 def verlet(s: Strides, t: float, h: float) -> bool:

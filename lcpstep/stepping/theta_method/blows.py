@@ -44,18 +44,15 @@ def separates(plan: Plan, s: State, c: Rows, b: Blows, n_a: int) -> bool:
     size_v, b.slow = max(largest(s.v, 0.0, s.n_q), largest(s.v_free, 0.0, s.n_q)), b.least
     for k in range(n_a):
         rate = product(c.H, s.v_free, ids[k], s.n_q) + c.H_t[ids[k]]
-        b.slow = max(b.slow, forced(s, c, ids[k], rate, size_v) + unmoved(plan, s, c, ids[k]))
+        # A step does not show what moves the coordinates by no more than their rounding
+        unmoved = RESOLUTION * size_of_product(c.H, s.q, ids[k], s.n_q) / plan.h
+        b.slow = max(b.slow, forced(s, c, ids[k], rate, size_v) + unmoved)
         if b.slow >= min(opens, closes):
             return False
     copy_indices(b.ids, ids, n_a)
     clear(b.p, c.n)
     b.n_a, b.taken, b.last, b.ends, b.fastest = n_a, 0, False, False, 0.0
     return True
-
-
-def unmoved(plan: Plan, s: State, c: Rows, i: int) -> float:
-    """The gap velocity that a step does not show: it moves the coordinates by no more than their rounding."""
-    return RESOLUTION * size_of_product(c.H, s.q, i, s.n_q) / plan.h
 
 
 def one_after_another(m: Model, plan: Plan, s: State, c: Rows, b: Blows, t_next: float) -> int:
