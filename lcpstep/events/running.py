@@ -23,7 +23,6 @@ from lcpstep.trajectory import Counts, Status
 Array = NDArray[np.float64]
 PORTION = 4096  # steps between two looks at the outside world, at most
 TRIALS = 17  # of the callbacks within an interval that failed
-QUADRATURE = 8  # nodes per step of the impulses of contact forces and joints
 FIRST_STEP = 0.1  # of the scan interval
 
 
@@ -88,22 +87,21 @@ class EventRun(Run):
 class Integrated(EventRun):
     """One run whose motion between events is a chain of steps, or of constant accelerations.
 
-    clock, motion   times of the motion; its steps, which have the state reached
+    clock           times of the motion
     scan            longest interval between two looks for events
     constant        accelerations are constant between events, and gaps linear in q
-    system          what moves
+    system          what moves, which has the state reached; made before what is shared is
     """
 
     system: Any
 
     def __init__(
-        self, method: Any, scene: Scene, kept: Kept, clock: Any, motion: Any, scan: float, columns: int,
-        constant: bool,
-    ) -> None:  # fmt: skip
+        self, method: Any, scene: Scene, kept: Kept, clock: Any, scan: float, constant: bool
+    ) -> None:
         shape = (1, scene.n_q) if constant else (7, 2 * scene.n_q)  # an acceleration, or dense output
         dense = shape if kept.all and self.is_dense(method, scene) else None
-        super().__init__(method, scene, kept, Recorder(scene.n_q, columns, kept, dense))
-        self.clock, self.motion, self.scan, self.constant = clock, motion, scan, constant
+        super().__init__(method, scene, kept, Recorder(scene.n_q, self.system.n_r, kept, dense))
+        self.clock, self.scan, self.constant = clock, scan, constant
         clock.record, clock.tally = self.recorder.record, self.tally
 
     def is_dense(self, method: Any, scene: Scene) -> bool:
@@ -134,13 +132,8 @@ class Integrated(EventRun):
     @property
     def state(self) -> tuple[Array, Array]:
         """Last known q and v."""
-        q, v = np.split(self.motion.state, 2)
+        q, v = np.split(self.system.state, 2)
         return q, v
-
-    @property
-    def evaluations(self) -> int:
-        """How often forces were evaluated."""
-        return int(self.motion.evaluations)
 
     def dense(self, s: States) -> Callable[[Array], tuple[Array, Array]]:
         """States at any time, from the kept ones and the motion from each to the next."""

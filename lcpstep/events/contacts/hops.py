@@ -21,8 +21,8 @@ from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.hybrid.roots import NONE
 from lcpstep.events.rows.contacts import gap_tolerance, speed_tolerance
 from lcpstep.events.rows.equations import acceleration_of, list_gaps, size_of, velocity_of
-from lcpstep.kernels.four_nodes import INNER, NODE_0, NODE_1, NODE_2, NODE_3, OUTER
 from lcpstep.kernels.quadratic import first_zero, highest
+from lcpstep.kernels.quadrature import NODES_4, WEIGHTS_4
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import largest
 from lcpstep.pointers import abs, after, inf, max, min, nan
@@ -132,14 +132,15 @@ def follow(s: Rubbing, c: int, tau: float) -> tuple[float, float, bool]:
     The integrals are of alpha less its value at the base, so that equal hops under constant acceleration stay equal
     to the last digit.
     """
-    alpha = s.bend[c]
-    d0, d1 = change_of_bend(s, c, NODE_0 * tau), change_of_bend(s, c, NODE_1 * tau)
-    d2, d3 = change_of_bend(s, c, NODE_2 * tau), change_of_bend(s, c, NODE_3 * tau)
-    mean = alpha + (OUTER * (d0 + d3) + INNER * (d1 + d2))
-    outer, inner = (1.0 - NODE_0) * d0 + (1.0 - NODE_3) * d3, (1.0 - NODE_1) * d1 + (1.0 - NODE_2) * d2
-    weighted = 0.5 * alpha + (OUTER * outer + INNER * inner)
+    alpha, outer, inner = s.bend[c], WEIGHTS_4[0], WEIGHTS_4[1]
+    x0, x1, x2, x3 = NODES_4[0], NODES_4[1], NODES_4[2], NODES_4[3]
+    d0, d1 = change_of_bend(s, c, x0 * tau), change_of_bend(s, c, x1 * tau)
+    d2, d3 = change_of_bend(s, c, x2 * tau), change_of_bend(s, c, x3 * tau)
+    mean = alpha + (outer * (d0 + d3) + inner * (d1 + d2))
+    late_outer, late_inner = (1.0 - x0) * d0 + (1.0 - x3) * d3, (1.0 - x1) * d1 + (1.0 - x2) * d2
+    weighted = 0.5 * alpha + (outer * late_outer + inner * late_inner)
     most = max(abs(alpha), max(max(abs(alpha + d0), abs(alpha + d1)), max(abs(alpha + d2), abs(alpha + d3))))
-    left = tau * tau * REMAINDER * eighth_power(d0 / NODE_0, d1 / NODE_1, d2 / NODE_2, d3 / NODE_3, most)
+    left = tau * tau * REMAINDER * eighth_power(d0 / x0, d1 / x1, d2 / x2, d3 / x3, most)
     u0 = s.rise[c]
     exact = left <= RESOLUTION * max(largest(s.q, 0.0, s.n_q), u0 * tau)
     return u0 + tau * weighted, u0 + tau * mean, exact
@@ -159,12 +160,12 @@ def eighth_power(d0: float, d1: float, d2: float, d3: float, most: float) -> flo
 
     Coefficients fall like powers of one ratio, which is the largest that those of x^2, x^3 and x^4 show.
     """
-    d01, d12 = (d1 - d0) / (NODE_1 - NODE_0), (d2 - d1) / (NODE_2 - NODE_1)
-    d23 = (d3 - d2) / (NODE_3 - NODE_2)
-    d02, d13 = (d12 - d01) / (NODE_2 - NODE_0), (d23 - d12) / (NODE_3 - NODE_1)
-    c4 = (d13 - d02) / (NODE_3 - NODE_0)
-    c3 = d02 - c4 * (NODE_0 + NODE_1 + NODE_2)
-    c2 = d01 - (NODE_0 + NODE_1) * d02 + c4 * (NODE_0 * NODE_1 + NODE_0 * NODE_2 + NODE_1 * NODE_2)
+    x0, x1, x2, x3 = NODES_4[0], NODES_4[1], NODES_4[2], NODES_4[3]
+    d01, d12, d23 = (d1 - d0) / (x1 - x0), (d2 - d1) / (x2 - x1), (d3 - d2) / (x3 - x2)
+    d02, d13 = (d12 - d01) / (x2 - x0), (d23 - d12) / (x3 - x1)
+    c4 = (d13 - d02) / (x3 - x0)
+    c3 = d02 - c4 * (x0 + x1 + x2)
+    c2 = d01 - (x0 + x1) * d02 + c4 * (x0 * x1 + x0 * x2 + x1 * x2)
     if most == 0.0:
         return 0.0
     ratio = max(sqrt(abs(c2) / most), max(pow(abs(c3) / most, 1.0 / 3.0), pow(abs(c4) / most, 0.25)))

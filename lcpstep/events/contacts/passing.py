@@ -12,6 +12,7 @@ from lcpstep.events.rows.contacts import add_impulse
 from lcpstep.events.rows.keep import keep_awaited
 from lcpstep.events.rows.projection import project
 from lcpstep.kernels.dop853 import ALL, STAGES
+from lcpstep.kernels.quadrature import NODES_8, WEIGHTS_8
 from lcpstep.kernels.vectors import clear, copy
 from lcpstep.pointers import abs
 
@@ -46,14 +47,14 @@ def keep_wanted(s: Rubbing, tau: float) -> None:
 
 
 def press_between(s: Rubbing, a: float, b: float) -> None:
-    """Add the impulses of the forces between a and b after the base: Gauss' quadrature."""
+    """Add the impulses of the forces between a and b after the base."""
     if s.rows.n_held == 0 or b <= a:
         return
-    for k in range(s.n_nodes):
-        tau = a + s.nodes[k] * (b - a)
+    for k in range(8):
+        tau = a + NODES_8[k] * (b - a)
         s.at(tau / s.length, s.seen)
         right_hand_side(s, s.rows.t0 + tau, s.seen, s.dy)
-        share = s.weights[k] * (b - a)
+        share = WEIGHTS_8[k] * (b - a)
         for i in range(s.n_r):
             add_impulse(s.rows, i, share * s.multiplier[i])
             s.counted[i] = s.counted[i] + share * s.multiplier[i]

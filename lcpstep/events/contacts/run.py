@@ -12,9 +12,8 @@ from lcpstep.events.codes import NO_SURFACE
 from lcpstep.events.contacts.loop import Course
 from lcpstep.events.contacts.smooth import Smooth
 from lcpstep.events.rows.contacts import Contacts
-from lcpstep.events.running import FIRST_STEP, QUADRATURE, Integrated
+from lcpstep.events.running import FIRST_STEP, Integrated
 from lcpstep.events.scan import scan_interval
-from lcpstep.gauss import gauss
 from lcpstep.kernels.function import Functions
 from lcpstep.model import coefficients, models
 from lcpstep.recording import Kept
@@ -42,7 +41,7 @@ def start(
     )
     s = kind(
         rows, coefficients(scene), tangential, friction is not None and friction.law == "stronge", yields,
-        scan, *gauss(QUADRATURE), **more,
+        scan, **more,
     )  # fmt: skip
     s.state[: scene.n_q], s.state[scene.n_q :] = scene.q0, scene.v0
     s.next_step = FIRST_STEP * scan
@@ -56,13 +55,18 @@ class ContactRun(Integrated):
 
     def __init__(self, method: Any, scene: Scene, kept: Kept) -> None:
         s = self.system = self.start(scene, method)
-        super().__init__(method, scene, kept, s.rows, s, s.scan_length, s.n_r, False)
+        super().__init__(method, scene, kept, s.rows, s.scan_length, False)
         self.course = Course(s)
 
     def start(self, scene: Scene, method: Any) -> Any:
         """The motion at the start of the span."""
         yields = method.jamming == "impact"
         return start(scene, Smooth, method.rtol, method.atol, yields=yields, modes=self.fields)
+
+    @property
+    def evaluations(self) -> int:
+        """How often forces were evaluated."""
+        return int(self.system.evaluations)
 
     def message(self, code: int) -> str:
         """How the run ended, in words."""

@@ -4,13 +4,13 @@ from lcpstep.kernels.coulomb cimport ContactProblem
 from lcpstep.kernels.model cimport Model
 
 cdef class Rubbing(RungeKutta):
-    cdef object rule, table, given, marks, looks, arms
+    cdef object table, given, marks, looks, arms
     cdef readonly Contacts rows
     cdef readonly Model model
     cdef readonly ContactProblem problem
     cdef readonly Coefficients coefficients
     cdef Scan scan
-    cdef readonly Py_ssize_t n_q, n_c, n_j, n_t, n_r, n_nodes
+    cdef readonly Py_ssize_t n_q, n_c, n_j, n_t, n_r
     cdef public Py_ssize_t jams
     cdef readonly bint in_turn, yields
     cdef readonly double scan_length
@@ -18,7 +18,7 @@ cdef class Rubbing(RungeKutta):
     cdef double found, slope, kept_to, shown, delay
     cdef readonly bint constant
     cdef bint plain, risen, sharing
-    cdef Doubles nodes, weights, q, v, a_free, a, force, dy, seen, dv, R, MR, W
+    cdef Doubles q, v, a_free, a, force, dy, seen, dv, R, MR, W
     cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, instant, paces
     cdef Doubles shifted_rate, counted, total, loads, doubt, effect, effects
     cdef Doubles mu, mu_s, slip, tangential, direction, new_direction, terms, before

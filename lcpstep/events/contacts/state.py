@@ -69,7 +69,7 @@ class Rubbing(RungeKutta):
     Parameters
     ----------
     rows : Contacts;  coefficients : Coefficients;  tangential : (n_c,);  in_turn, yields : bool
-    scan_length : float;  nodes, weights : quadrature on [0, 1]
+    scan_length : float
     """
 
     watch: Any
@@ -82,8 +82,6 @@ class Rubbing(RungeKutta):
         in_turn: bool,
         yields: bool,
         scan_length: float,
-        nodes: Any,
-        weights: Any,
     ) -> None:
         contacts = rows.model
         n, n_c, n_j, r = rows.n_q, rows.n_c, rows.n_j, rows.n_r
@@ -100,9 +98,6 @@ class Rubbing(RungeKutta):
         self.guard, self.found, self.slope = -1, -1.0, 0.0
         self.risen = self.sharing = False
         self.kept_to, self.shown, self.delay = 0.0, 2.0, 0.0
-        self.rule = np.array([nodes, weights])
-        self.n_nodes, self.nodes = len(nodes), doubles(self.rule)
-        self.weights = after(self.nodes, self.n_nodes)
         self.table = np.zeros(4 * n + (4 + ALL) * r + 1 + (n + r) ** 2 + 9 * n_c)
         self.marks, self.arms = np.zeros(5 * n_c, dtype=np.intp), np.zeros(GUARDS * n_c, dtype=np.intp)
         self.looks, self.given = np.zeros(GUARDS * n_c * (SAMPLES + 2)), np.array(tangential, dtype=float)

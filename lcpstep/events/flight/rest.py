@@ -12,16 +12,11 @@ import cython
 
 from lcpstep.events.flight.contact import NONE
 from lcpstep.events.flight.motion import Flight, on_obstacle
-from lcpstep.gauss import gauss
+from lcpstep.kernels.quadrature import NODES_8, WEIGHTS_8
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.pointers import abs, inf
 
 PROBES = 4  # samples of alpha per interval while the contact is closed
-NODES = 8  # and weights of Gauss, for the impulse of the contact force
-if not cython.compiled:
-    NODE, WEIGHT = [0.0] * NODES, [0.0] * NODES
-for place, (node, weight) in enumerate(zip(*gauss(NODES), strict=True)):
-    NODE[place], WEIGHT[place] = node, weight
 
 
 def alpha_at(s: Flight, t: float) -> float:
@@ -33,8 +28,8 @@ def alpha_at(s: Flight, t: float) -> float:
 def contact_impulse(s: Flight, a: float, b: float) -> float:
     """Impulse of the contact force lambda = -alpha / (G M^-1 G^T) over (a, b) [N s]."""
     total = 0.0
-    for k in range(NODES):
-        total -= WEIGHT[k] * alpha_at(s, a + NODE[k] * (b - a))
+    for k in range(8):
+        total -= WEIGHTS_8[k] * alpha_at(s, a + NODES_8[k] * (b - a))
     return total * (b - a) / s.response
 
 

@@ -30,5 +30,5 @@ class ParabolicRun(Integrated):
         tolerances = method.rtol, method.atol
         s = self.system = Mechanism(m, joints, scene.n_j, tolerances, scene.t_span)
         s.start(scene.q0, scene.v0)
-        super().__init__(method, scene, kept, s, s, scan_interval(scene, m, 0.0), scene.n_c + scene.n_j, True)
+        super().__init__(method, scene, kept, s, scan_interval(scene, m, 0.0), True)
         self.course = Course(s)

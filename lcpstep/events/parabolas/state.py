@@ -25,7 +25,7 @@ class Mechanism(Contacts):
 
     length            duration of the last flight
     bare              whether the acceleration is that without contacts
-    state             q0, v0 as Python sees them;  evaluations   of forces, none
+    state             q0, v0 as Python sees them
     q0, v0            state at the base time;  q, v  state last asked for
     n_members         of the problem, contacts that are closed;  lift : (n_c,)   rounding of its rates
     synchronous : (n_c,)   whether gap and velocity are those of q, v
@@ -41,8 +41,7 @@ class Mechanism(Contacts):
         Contacts.__init__(self, model, joints, n_j, model, 0, tolerances, t_span, (), inf)
         n, n_c = self.n_q, self.n_c
         self.length, self.bare, self.n_members = 0.0, False, 0
-        self.state, self.evaluations = np.zeros(2 * n), 0
-        self.numbers = np.zeros(2 * n + 2 * n_c)
+        self.state, self.numbers = np.zeros(2 * n), np.zeros(2 * n + 2 * n_c)
         self.q0 = doubles(self.state)
         self.v0 = after(self.q0, n)
         self.q = doubles(self.numbers)

@@ -1,5 +1,3 @@
-cdef double[4] NODES, WEIGHTS
-
 cdef class Polynomial:
     cdef readonly object kept
     cdef readonly double t, scale

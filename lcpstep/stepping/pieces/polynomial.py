@@ -19,7 +19,6 @@ import numpy as np
 
 from lcpstep.arrays import doubles
 from lcpstep.kernels.dynamics import gap_rates, gap_velocities, gaps, obstacle
-from lcpstep.kernels.four_nodes import INNER, NODE_0, NODE_1, NODE_2, NODE_3, OUTER
 from lcpstep.kernels.linear import grow_factor, solve_factored
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.turn import Turn
@@ -34,8 +33,6 @@ DEGREE, QUINTIC = 22, 5  # of Taylor's polynomials and of Hermite's
 PROBES = 4  # of contact forces on a piece
 DOUBTFUL = 64.0  # rounding of a factor's diagonal, in its own units, from which on forces are corrected,
 CORRECTIONS = 2  # so many times
-NODES = [NODE_0, NODE_1, NODE_2, NODE_3]
-WEIGHTS = [OUTER, INNER, INNER, OUTER]
 
 
 class Polynomial:

@@ -9,6 +9,7 @@ import cython
 
 from lcpstep.kernels.dynamics import gap_rates, moves
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.quadrature import NODES_4, WEIGHTS_4
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.status import DONE, LCP_FAILED, NOT_FINITE
 from lcpstep.kernels.vectors import copy, distance, product
@@ -22,8 +23,6 @@ from lcpstep.stepping.pieces.loop import Steps
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, velocity_of
 from lcpstep.stepping.pieces.piece import penetrates
 from lcpstep.stepping.pieces.polynomial import (
-    NODES,
-    WEIGHTS,
     Polynomial,
     acceleration,
     expand,
@@ -151,10 +150,10 @@ def follow(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float, ends: bool)
         return DONE
     if w.closed_now > 0:
         for k in range(4):
-            if not force_at(m, plan, w, z, NODES[k] * tau):
+            if not force_at(m, plan, w, z, NODES_4[k] * tau):
                 return NOT_FINITE
             for c in range(w.n_c):
-                p = WEIGHTS[k] * tau * max(w.p[c], 0.0)  # else a zero's rounding
+                p = WEIGHTS_4[k] * tau * max(w.p[c], 0.0)  # else a zero's rounding
                 w.impulse[c] += p
                 w.pushed[c] += p
     state_at(m, plan, w, z, tau)

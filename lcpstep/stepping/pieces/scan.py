@@ -14,13 +14,14 @@ import cython
 
 from lcpstep.kernels.dynamics import moves
 from lcpstep.kernels.model import Model
+from lcpstep.kernels.quadrature import NODES_4, WEIGHTS_4
 from lcpstep.kernels.roundings import NOISE, RESOLUTION
 from lcpstep.kernels.vectors import copy, size_of_product
 from lcpstep.pointers import abs, after, inf, max, min
 from lcpstep.stepping.pieces.codes import CLOSED, LEFT, NOBODY, OPEN
 from lcpstep.stepping.pieces.contact_forces import pulls
 from lcpstep.stepping.pieces.magnitudes import acceleration_terms, speed_terms
-from lcpstep.stepping.pieces.polynomial import NODES, PROBES, WEIGHTS, Polynomial, contacts_at, force_at
+from lcpstep.stepping.pieces.polynomial import PROBES, Polynomial, contacts_at, force_at
 from lcpstep.stepping.pieces.state import Plan, Work
 
 NOWHERE = -2
@@ -42,8 +43,8 @@ def hop_at(m: Model, plan: Plan, w: Work, z: Polynomial, tau: float, c: int) -> 
     """A low gap at tau after the base of the piece, over tau, and its slope."""
     mean, base = 0.0, max(w.gap[c], 0.0) / tau
     for k in range(4):
-        _, u = gap_at(m, plan, w, z, NODES[k] * tau, c)
-        mean += WEIGHTS[k] * u
+        _, u = gap_at(m, plan, w, z, NODES_4[k] * tau, c)
+        mean += WEIGHTS_4[k] * u
     _, u = gap_at(m, plan, w, z, tau, c)
     return base + mean, (u - mean - base) / tau
 

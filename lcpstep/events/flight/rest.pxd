@@ -1,2 +1,0 @@
-cdef double[8] NODE
-cdef double[8] WEIGHT
