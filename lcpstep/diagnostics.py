@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
-from lcpstep.gauss import gauss
+from lcpstep.kernels.gauss import gauss
 from lcpstep.kernels import states
 from lcpstep.model import model, tangent_model
 from lcpstep.stepping.sparse.equations import Equations

@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 from lagrangian import Scene, checks, labels
 from lcpstep.accuracy.graphs import Graph, hausdorff
 from lcpstep.accuracy.matching import Matching, match_impacts
-from lcpstep.gauss import gauss
 from lcpstep.kernels import states
+from lcpstep.kernels.gauss import gauss
 from lcpstep.model import model
 
 Array = NDArray[np.float64]

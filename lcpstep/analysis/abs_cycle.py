@@ -25,7 +25,7 @@ from lcpstep.errors import LcpStepError
 from lcpstep.events import EventDriven
 from lcpstep.events.hybrid.many import End, Follower
 from lcpstep.events.hybrid.trajectory import HybridTrajectory
-from lcpstep.gauss import gauss
+from lcpstep.kernels.gauss import gauss
 from lcpstep.simulation import simulate
 from lcpstep.trajectory import Status
 

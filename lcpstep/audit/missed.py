@@ -23,8 +23,8 @@ from lcpstep.audit.drift import begins, finite, frequency
 from lcpstep.audit.polynomials import Polynomials, basis
 from lcpstep.audit.quadrature import errors
 from lcpstep.audit.sums import add_up, changes
-from lcpstep.gauss import gauss
 from lcpstep.kernels import states
+from lcpstep.kernels.gauss import gauss
 from lcpstep.kernels.model import Model
 from lcpstep.model import models
 from lcpstep.trajectory import Kind, Trajectory

@@ -9,7 +9,7 @@ import cython
 import numpy as np
 
 from lcpstep.arrays import doubles
-from lcpstep.gauss import gauss
+from lcpstep.kernels.gauss import gauss
 from lcpstep.pointers import Doubles
 
 EARLIER, LATER = float(gauss(2)[0][0]), float(gauss(2)[0][1])  # nodes in an interval (0, 1)

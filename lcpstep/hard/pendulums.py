@@ -16,7 +16,7 @@ from lagrangian.scenes.double_pendulum import (
 from lagrangian.scenes.pendulum import tension
 from lagrangian.scenes.rocking_block import impact_ratio, rocking_times
 from lagrangian.scenes.slider_crank import energy
-from lcpstep.gauss import gauss
+from lcpstep.kernels.gauss import gauss
 from lcpstep.hard.check import (
     FIRST_ORDER,
     SECOND_ORDER,

@@ -17,7 +17,7 @@ from lcpstep.events.codes import OPEN, SLIDES, STICKS
 from lcpstep.events.contacts import point
 from lcpstep.events.contacts.run import start
 from lcpstep.events.contacts.smooth import Smooth
-from lcpstep.gauss import gauss
+from lcpstep.kernels.gauss import gauss
 from lcpstep.trajectory import Kind, Trajectory
 
 NODES = 6  # of Gauss' rule

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cython
 
-from lcpstep.gauss import gauss
+from lcpstep.kernels.gauss import gauss
 
 NODES_4 = [0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263]
 WEIGHTS_4 = [0.17392742256872692, 0.32607257743127307, 0.32607257743127307, 0.17392742256872692]

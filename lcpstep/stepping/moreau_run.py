@@ -45,18 +45,18 @@ class MoreauRun(StepRun):
         self.rows = rows(scene, joints, tangents, method.projected, method.lcp != "lemke")
         flat = self.model.flat and joints.flat and tangents.flat
         self.constant = flat and self.model.linear and not method.projected
-        self.place = State(scene.q0, scene.v0, scene.n_c, self.rows.n)
+        self.motion = State(scene.q0, scene.v0, scene.n_c, self.rows.n)
         expected = kept.of_steps(number(scene.t_span, method.h)) if method.tolerance is None else None
         recorder = Recorder(scene.n_q, self.rows.n, kept, expected=expected)
         super().__init__(method, scene, kept, recorder, PORTION)
-        self.impulse = self.place.arrays["impulse"]
+        self.impulse = self.motion.arrays["impulse"]
         self.slack = RESTING * (places(self.model, scene.q0, scene.v0, method.h) or 1.0)
-        own = self.place.arrays["slack"]
+        own = self.motion.arrays["slack"]
         own_places(self.model.arrays["offset"], ways(self.model, scene.q0, scene.v0, method.h), own)
         own *= RESTING
         made = self.plan_for(self.stretches[0][0])
-        self.place.record = recorder.record
-        self.loop = loop.Steps(self.model, made, self.place, self.rows)
+        self.motion.record = recorder.record
+        self.loop = loop.Steps(self.model, made, self.motion, self.rows)
 
     def begin(self) -> int:
         """The initial state; a code."""
@@ -85,7 +85,7 @@ class MoreauRun(StepRun):
         """What steps of size h multiply with."""
         made = plan(self.model, self.rows, h, self.method.theta, self.slack, self.constant)
         if self.constant and self.rows.n > self.rows.n_c:
-            constant_rows(self.model, made, self.place, self.rows, self.scene.t_span[0])
+            constant_rows(self.model, made, self.motion, self.rows, self.scene.t_span[0])
         return made
 
     def solve_outside(self) -> bool:
@@ -101,7 +101,7 @@ class MoreauRun(StepRun):
     @property
     def active(self) -> list[int]:
         """Contacts that are active in the step at hand."""
-        return [int(c) for c in self.rows.problem.lists[0][: self.place.active]]
+        return [int(c) for c in self.rows.problem.lists[0][: self.motion.active]]
 
     @property
     def now(self) -> float:
@@ -111,17 +111,17 @@ class MoreauRun(StepRun):
     @property
     def steps(self) -> int:
         """Steps taken."""
-        return int(self.place.steps)
+        return int(self.motion.steps)
 
     @property
     def state(self) -> tuple[Array, Array]:
         """Last known q and v."""
-        return self.place.arrays["q"], self.place.arrays["v"]
+        return self.motion.arrays["q"], self.motion.arrays["v"]
 
     @property
     def counts(self) -> Counts:
         """Work done."""
-        s = self.place
+        s = self.motion
         return Counts(s.steps, s.problems, s.forces, self.recorder.taken)
 
     def dense(self, s: States) -> interpolation.Between:

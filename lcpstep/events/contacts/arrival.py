@@ -13,7 +13,7 @@ from lcpstep.events.contacts.parting import part_before
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.contacts.surfaces import find_coming, find_touching, lift
 from lcpstep.events.rows.accelerations import accelerate_as_held
-from lcpstep.events.rows.contacts import gap_tolerance, has_stopped, still
+from lcpstep.events.rows.contacts import gap_tolerance, has_stopped, still_below
 from lcpstep.events.rows.equations import acceleration_of
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.pointers import abs, max
@@ -58,7 +58,7 @@ def is_other(s: Rubbing, c: int) -> bool:
 
 
 def tells(s: Rubbing) -> bool:
-    """Whether modes just decided are others, of which more is known than that they are at the edge of the cone."""
+    """Whether a mode just decided differs, other than sticking to leaning at the edge of the cone."""
     some = False
     for c in range(s.n_c):
         some = some or (is_other(s, c) and not wavers(s, c))
@@ -122,7 +122,7 @@ def stop_with(s: Rubbing, c: int) -> None:
     for d in range(s.n_c):
         k = s.n_j + s.n_c + d
         with_it = s.velocity[i] * acceleration_of(s.rows, k, s.a) / own
-        if abs(s.velocity[k] - with_it) <= still(s.rows, k) + EDGE * abs(with_it):
+        if abs(s.velocity[k] - with_it) <= still_below(s.rows, k) + EDGE * abs(with_it):
             s.may_stick[d] = 1
 
 

@@ -14,7 +14,7 @@ from lcpstep.events.codes import OPEN, STICKS
 from lcpstep.events.contacts.equations import force_noise, measure, share_left
 from lcpstep.events.contacts.modes import adopt_modes, decide
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.contacts.surfaces import touching
+from lcpstep.events.contacts.surfaces import closed_below
 from lcpstep.events.rows.accelerations import accelerate_as_held, accelerate_on_joints
 from lcpstep.events.rows.equations import acceleration_of
 from lcpstep.kernels.status import DONE, NOT_FINITE
@@ -48,9 +48,9 @@ def lets_go(s: Rubbing, c: int) -> bool:
 
 
 def reconsider(s: Rubbing, longest: float) -> int:
-    """`decide` anew at the base state, with accelerations in `doubt` that are not known; a status.
+    """`decide` anew at the base state, with accelerations that are not known in `unsure`; a status.
 
-    A contact opens only by an acceleration that is more than that. Where nothing is in doubt, `doubt` is zero.
+    A contact opens only by an acceleration that is more than that. Where nothing is in doubt, `unsure` is zero.
     """
     h, share = min(s.next_step, longest), MOMENT
     while share >= SHORTEST:
@@ -62,7 +62,7 @@ def reconsider(s: Rubbing, longest: float) -> int:
                 return code
             break
         share *= SHORTER
-    clear(s.doubt, s.n_r)
+    clear(s.unsure, s.n_r)
     return decide(s)
 
 
@@ -77,18 +77,18 @@ def pulls(s: Rubbing) -> bool:
     noise = force_noise(s)
     for c in range(s.n_c):
         i = s.n_j + c
-        doubtful = s.mode[c] != OPEN and s.doubt[i] > 0.0 and s.W[i * s.n_r + i] > 0.0
-        some = some or (doubtful and s.multiplier[i] < -noise - s.doubt[i] / s.W[i * s.n_r + i])
+        doubtful = s.mode[c] != OPEN and s.unsure[i] > 0.0 and s.W[i * s.n_r + i] > 0.0
+        some = some or (doubtful and s.multiplier[i] < -noise - s.unsure[i] / s.W[i * s.n_r + i])
         s.mode[c] = s.tried[c]
     return some
 
 
 def foresee(s: Rubbing, tau: float) -> bool:
-    """What the accelerations of the rows, with joints alone, change by within the time tau, into `doubt`."""
+    """What the accelerations of the rows, with joints alone, change by within the time tau, into `unsure`."""
     n = s.n_q
     accelerate_on_joints(s.rows)
     for i in range(s.n_r):
-        s.doubt[i] = acceleration_of(s.rows, i, s.a)
+        s.unsure[i] = acceleration_of(s.rows, i, s.a)
     for j in range(n):
         s.seen[j] = s.q[j] + tau * s.v[j]
         s.seen[n + j] = s.v[j] + tau * s.a[j]
@@ -96,7 +96,7 @@ def foresee(s: Rubbing, tau: float) -> bool:
         return False
     accelerate_on_joints(s.rows)
     for i in range(s.n_r):
-        s.doubt[i] = DOUBTFUL * abs(acceleration_of(s.rows, i, s.a) - s.doubt[i])
+        s.unsure[i] = DOUBTFUL * abs(acceleration_of(s.rows, i, s.a) - s.unsure[i])
     return measure(s, s.rows.t0, s.y)
 
 
@@ -105,5 +105,5 @@ def cannot_be_told(s: Rubbing, tau: float) -> bool:
     untold, long = True, DOUBTFUL * tau
     for c in range(s.n_c):
         if s.mode[c] != OPEN and s.new_mode[c] == OPEN:
-            untold = untold and s.doubt[s.n_j + c] * long * long <= touching(s, c, share_left(s))
+            untold = untold and s.unsure[s.n_j + c] * long * long <= closed_below(s, c, share_left(s))
     return untold

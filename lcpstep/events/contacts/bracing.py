@@ -29,7 +29,7 @@ ALIKE = 1e-6  # of a row: what counts for none of it
 STILL = 1e-9  # relative: accelerations of what is at rest; and distance of forces from the edges of cones
 
 
-def braced(s: Rubbing) -> bool:
+def brace(s: Rubbing) -> bool:
     """Whether the rows held carry the load within their cones, or others could be found that do; these are held then.
 
     Where there are none the modes are not what they were.
@@ -48,10 +48,10 @@ def braced(s: Rubbing) -> bool:
         independent = max(independent, s.rows.n_held)
         if held and s.rows.n_held == independent and carries(s, STILL):
             return True
-    return shares(s)
+    return share_load(s)
 
 
-def shares(s: Rubbing) -> bool:
+def share_load(s: Rubbing) -> bool:
     """Whether contacts that all stick carry the load together, as those of what can only slide as a whole do.
 
     Tangents that say the same are held as one, which has the friction of all: that of each is not known.

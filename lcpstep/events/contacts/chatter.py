@@ -35,7 +35,7 @@ from lcpstep.events.rows.contacts import (
     of_tangent,
     rubs,
     sliding,
-    still,
+    still_below,
 )
 from lcpstep.events.rows.equations import acceleration_of, size_of, velocity_of
 from lcpstep.events.rows.held import constrain, is_held
@@ -80,7 +80,7 @@ def rests(s: Rubbing, c: int) -> bool:
         return False
     pull = abs(acceleration_of(s.rows, i, s.a))
     most = sqrt(2.0 * pull * NOISE * size_of(s.rows, i, 0.0, s.q))
-    return abs(sliding(s.rows, c)) <= max(most, still(s.rows, i))
+    return abs(sliding(s.rows, c)) <= max(most, still_below(s.rows, i))
 
 
 def stops_others(s: Rubbing, c: int, T: float) -> bool:
@@ -94,7 +94,7 @@ def stops_others(s: Rubbing, c: int, T: float) -> bool:
         k, slip = s.n_j + s.n_c + d, sliding(s.rows, d)
         if d != c and s.mode[d] == SLIDES and rubs(s.rows, d) and (passed_on or meets(s.rows, c, k)):
             stops = slip * (slip + T * acceleration_of(s.rows, k, s.a)) < 0.0
-            if stops and s.model.restitution[c] * abs(slip) > still(s.rows, k):
+            if stops and s.model.restitution[c] * abs(slip) > still_below(s.rows, k):
                 return True
     return False
 

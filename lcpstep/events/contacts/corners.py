@@ -14,7 +14,7 @@ from lcpstep.events.codes import JUMP, OPEN
 from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.impact import begin_instant
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import still, stop_joints
+from lcpstep.events.rows.contacts import still_below, stop_joints
 from lcpstep.events.rows.jumps import go_beyond, joints_jump
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.pointers import abs
@@ -52,7 +52,7 @@ def strike_beyond(s: Rubbing) -> int:
     for c in range(s.n_c):
         i, closed = s.n_j + c, s.mode[c] != OPEN
         s.touches[c] = 1 if closed or s.before[c] < 0.0 else 0
-        if s.before[c] < 0.0 or (closed and abs(s.velocity[i]) > still(s.rows, i)):
+        if s.before[c] < 0.0 or (closed and abs(s.velocity[i]) > still_below(s.rows, i)):
             s.mode[c], s.jumped[c] = OPEN, s.velocity[i] - s.before[c]
     s.rows.next = JUMP
     return DONE

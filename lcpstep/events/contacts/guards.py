@@ -30,7 +30,7 @@ from lcpstep.pointers import Doubles, abs, after, max, min
 PARTS = 64  # of a step, at most, in which guards are polynomials
 MOST_PARTS, UNSEEN = 4096, 1e-6  # the same where a gap turns faster than the motion: by so much of it
 RESOLVED = 1e-8  # difference of guard and polynomial, relative to its largest value
-LOW = 1e-2  # of a hop's height
+FOOT = 1e-2  # of a hop's height
 OFF = 1.0  # value of a guard that a contact does not have
 
 
@@ -90,7 +90,7 @@ def begin_guards(s: Rubbing) -> bool:
         k, i = GUARDS * c, s.n_j + c
         s.flying = s.flying and s.mode[c] == OPEN
         if s.mode[c] == OPEN:
-            noise = s.rows.rounding_of_gap(c) + share * no_gap(s, c, s.rise[c], s.bend[c])
+            noise = s.rows.rounding_of_gap(c) + share * no_gap_below(s, c, s.rise[c], s.bend[c])
             s.band[k] = max(noise + depth(s, c), -2.0 * s.value[k])  # deeper than it is now
         else:
             own = s.W[i * s.n_r + i]  # none in the middle of a bowl
@@ -105,13 +105,13 @@ def begin_guards(s: Rubbing) -> bool:
     return True
 
 
-def no_gap(s: Rubbing, c: int, u: float, alpha: float) -> float:
+def no_gap_below(s: Rubbing, c: int, u: float, alpha: float) -> float:
     """The gap of contact c that counts as none even where all its terms vanish: a small share of the tolerance.
 
     Of a hop that begins, with velocity u and acceleration alpha, it is small beside the height u^2 / (2 |alpha|).
     """
     least = NOISE * gap_tolerance(s.rows, c)
-    return min(least, LOW * u * u / -alpha) if u > 0.0 and alpha < 0.0 else least
+    return min(least, FOOT * u * u / -alpha) if u > 0.0 and alpha < 0.0 else least
 
 
 def depth(s: Rubbing, c: int) -> float:

@@ -12,7 +12,7 @@ import cython
 
 from lcpstep.events.contacts.equations import measure_friction
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.contacts import list_multipliers, pull
+from lcpstep.events.rows.contacts import friction_ratio, list_multipliers
 from lcpstep.events.rows.equations import free_motion, measure_biases, measure_rates, respond_held
 from lcpstep.events.rows.held import constrain, entry, hold_again
 from lcpstep.kernels.acceleration import inverse_mass
@@ -24,7 +24,7 @@ from lcpstep.pointers import Doubles, after
 def hold_modes_again(s: Rubbing) -> bool:
     """The same rows, measured at another state; False where they have become dependent."""
     for m in range(s.rows.n_held):
-        s.rows.share[s.rows.row[m]] = pull(s.rows, s.rows.row[m])
+        s.rows.share[s.rows.row[m]] = friction_ratio(s.rows, s.rows.row[m])
     respond_held(s.rows)
     i = hold_again(s.rows)
     if i >= 0:

@@ -3,7 +3,8 @@
     xi = u+ + r u-  on normals and tangents,  0 <= xi_N  complementary to  p_N >= 0,  p_T = -mu p_N sign(xi_T)
 
 Moreau's law: with one restitution for normals and tangents of all that strike together it creates no energy; with
-none on the tangents it is Newton's, and may. Impacts integrated over their impulse, in turn: `kernels.energetic`.
+none on the tangents it is Newton's, and may. A velocity u- > 0 is rounding (`gather`), and counts as 0. Impacts
+integrated over their impulse, in turn: `kernels.energetic`.
 Source: J. J. Moreau, Unilateral contact and dry friction in finite freedom dynamics (CISM 302, 1988).
 """
 
@@ -13,11 +14,11 @@ import cython
 
 from lcpstep.events.codes import ACCUMULATION, IMPACT, JAM, LEANS, NO_IMPULSES, OPEN, SLIDES, STICKS
 from lcpstep.events.contacts.equations import renew_friction
-from lcpstep.events.contacts.parting import approaches, let_go, pass_by, rejoin
+from lcpstep.events.contacts.parting import close_or_find_approach, let_go, pass_by, rejoin
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import GONE
-from lcpstep.events.rows.contacts import has_stopped, measure_velocities, sliding, still, stop_joints
-from lcpstep.events.rows.cycle import ROUNDS, fades, look_back, recurs, sum_up
+from lcpstep.events.rows.contacts import has_stopped, measure_velocities, sliding, still_below, stop_joints
+from lcpstep.events.rows.cycle import ROUNDS, close_if_faded, look_back, recurs, sum_up
 from lcpstep.events.rows.exchange import leave_for_later, some_exchange
 from lcpstep.events.rows.held import hold_joints
 from lcpstep.events.rows.problem import fill, list_unknowns, row_of
@@ -41,7 +42,7 @@ def jump(s: Rubbing) -> int:
         s.rows.stalled = s.rows.tally.stalled
         pass_by(s)
     while s.rows.rounds < most:
-        if not approaches(s):
+        if not close_or_find_approach(s):
             rejoin(s)
             find_who_may_stick(s)
             if s.rows.tally.stalled > s.rows.stalled + 1:  # the impacts of one instant count as one
@@ -55,8 +56,8 @@ def jump(s: Rubbing) -> int:
             return NOT_FINITE
         ratio = recurs(s.rows) if s.rows.rounds > 0 else 0.0
         if ratio >= FOR_EVER:
-            if not fades(s.rows):
-                return TOO_MANY_EVENTS if can_rest(s) else NO_IMPULSES
+            if not close_if_faded(s.rows):
+                return TOO_MANY_EVENTS if try_rest(s) else NO_IMPULSES
         elif ratio > 0.0:
             sum_up(s.rows, ratio)
         else:
@@ -66,7 +67,7 @@ def jump(s: Rubbing) -> int:
                 return NOT_FINITE
             s.rows.rounds += 1
             # The last ones of what is held from all sides may leave speeds that but rounding contradicts
-            if not strike(s, s.rows.rounds > ROUNDS) and not (s.rows.rounds > 1 and fades(s.rows)):
+            if not strike(s, s.rows.rounds > ROUNDS) and not (s.rows.rounds > 1 and close_if_faded(s.rows)):
                 return NO_IMPULSES
     return TOO_MANY_EVENTS
 
@@ -108,7 +109,7 @@ def look_before(s: Rubbing) -> None:
         s.may_stick[c] = 1
 
 
-def can_rest(s: Rubbing) -> bool:
+def try_rest(s: Rubbing) -> bool:
     """Whether a plastic impact would bring to rest what is struck in turn for ever: not between walls that close.
 
     Modes are put back where it would; else all that touch are left closed, for the message names them.
@@ -122,12 +123,12 @@ def can_rest(s: Rubbing) -> bool:
 
 
 def take_for_none(s: Rubbing, c: int) -> None:
-    """Take a sliding velocity of contact c for none that is rounding, or, where it sticks or leans, below `still`.
+    """Set a sliding velocity of contact c below rounding to zero; where it sticks or leans, below `still_below`.
 
     What is left of a velocity that has died away, say 1e-49, would keep solvers from an answer beside others.
     """
     i, T = s.n_c + c, s.n_j + s.n_c + c
-    least = still(s.rows, T) if s.mode[c] in (STICKS, LEANS) else s.terms[i]
+    least = still_below(s.rows, T) if s.mode[c] in (STICKS, LEANS) else s.terms[i]
     if abs(s.velocity[T]) <= least:
         s.terms[i] = max(s.terms[i], abs(s.velocity[T]))
         s.velocity[T] = 0.0
@@ -152,7 +153,7 @@ def gather(s: Rubbing, plastic: bool) -> tuple[int, int]:
             s.problem.ids[n] = c  # a mere list: `pose` writes that of the problem
             n += 1
     if not plastic and follow_each_other(s, n):
-        n = leave_for_later(s.rows, n, s.length == 0.0)
+        n = leave_for_later(s.rows, n, s.length == 0.0)  # no step was ever made
     for a in range(n):
         if s.mode[s.problem.ids[a]] == OPEN:
             s.mode[s.problem.ids[a]] = SLIDES
@@ -179,7 +180,7 @@ def pose(s: Rubbing) -> tuple[int, int]:
 def strike_with(s: Rubbing, n_a: int, n_f: int, jammed: int, plastic: bool) -> None:
     """Apply the impulses found, and close or open the contacts by the velocities that they leave.
 
-    jammed : the contact that has, -1 where none has, n_c where several together have
+    jammed : the contact whose sliding has jammed; -1: none, an impact; n_c: several together have
     A plastic one stands for impacts without end, and is told as such where the law of a contact is another.
     """
     t = s.rows.t0

@@ -33,7 +33,7 @@ from lcpstep.events.contacts.guards import begin_guards
 from lcpstep.events.contacts.impact import begin_instant, jump
 from lcpstep.events.contacts.jamming import jam
 from lcpstep.events.contacts.loose import find_loose
-from lcpstep.events.contacts.modes import adopt_modes, decide, keep_mode, obey, undecided
+from lcpstep.events.contacts.modes import adopt_modes, decide, keep_mode, mark_undecided, obey
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.step import FURTHER, LOOK_AHEAD
 from lcpstep.events.contacts.surfaces import come_to_rest, find_closed
@@ -85,7 +85,7 @@ def occur(s: Rubbing) -> int:
         code = jump(s) if come_to_rest(s) else NOT_FINITE
         if code == DONE:
             s.rows.next = SETTLE
-        s.guards = ENTERED if s.guards == ENTERED else JUMPED
+        s.since_look = ENTERED if s.since_look == ENTERED else JUMPED
         return code
     if s.rows.next == SWITCH:
         s.rows.next = JUMP
@@ -107,7 +107,7 @@ def yielding(s: Rubbing, code: int) -> int:
 
 def go_further(s: Rubbing) -> int:
     """A step of the motion, or what precedes it: a look at guards, the first state kept, a corner; a status."""
-    if s.watch is not None and s.guards != LOOKED:
+    if s.watch is not None and s.since_look != LOOKED:
         look_at_guards(s)
         return DONE
     if s.rows.record.row == 0 and s.rows.record.n_times == 0:
@@ -170,13 +170,13 @@ def seek_modes(s: Rubbing) -> int:
         return JOINTS_FAILED
     if code == DONE and opens_any(s):
         code = reconsider(s, longest)
-    if code == DONE and undecided(s):
+    if code == DONE and mark_undecided(s):
         copy_indices(s.tried, s.new_mode, s.n_c)
         copy(after(s.samples, 2 * s.n_c), s.new_direction, s.n_c)
         code = look_on(s, longest)
         if code == DONE:
             add_what_is_now(s, after(s.samples, 2 * s.n_c))
-    clear(s.doubt, s.n_r)
+    clear(s.unsure, s.n_r)
     copy(s.terms, s.samples, 2 * s.n_c)
     return code
 
@@ -198,7 +198,7 @@ def look_on(s: Rubbing, longest: float) -> int:
         code = decide(s)
         if code != DONE:
             return code
-        open_question = undecided(s)
+        open_question = mark_undecided(s)
         if changes_any(s):
             for c in range(s.n_c):
                 keep_mode(s, c)

@@ -14,7 +14,7 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import EDGE, LEANS, NO_FORCES, OPEN, SLIDES, STICKS
-from lcpstep.events.contacts.bracing import braced
+from lcpstep.events.contacts.bracing import brace
 from lcpstep.events.contacts.equations import let_stick
 from lcpstep.events.contacts.leaning import stand, stand_alone
 from lcpstep.events.contacts.several import opened_or_closed
@@ -158,7 +158,7 @@ def keep_mode(s: Rubbing, c: int) -> None:
     s.new_mode[c], s.new_direction[c], s.new_loaded[c] = s.mode[c], s.direction[c], s.loaded[c]
 
 
-def undecided(s: Rubbing) -> bool:
+def mark_undecided(s: Rubbing) -> bool:
     """Whether the forces leave the mode of a contact open, after `decide`: those that come decide about it.
 
     It has no normal force, and none would be needed. Where nothing pulls along it either it sticks meanwhile.
@@ -190,7 +190,7 @@ def idles(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
 
 def is_nothing(s: Rubbing, a: int, alpha: float, n_a: int, n_f: int) -> bool:
     """Whether an acceleration of unknown a's row is zero as far as it is known."""
-    return abs(alpha) <= NOISE * size_of_terms(s, a, n_a, n_f) + s.doubt[row_of(s.rows, a, n_a)]
+    return abs(alpha) <= NOISE * size_of_terms(s, a, n_a, n_f) + s.unsure[row_of(s.rows, a, n_a)]
 
 
 def acceleration(s: Rubbing, a: int, n_a: int, n_f: int) -> float:
@@ -203,7 +203,7 @@ def opens(s: Rubbing, a: int, n_a: int, n_f: int) -> bool:
 
     By more than the rounding of forces that hang together: friction that has nothing to hold is that of the largest.
     """
-    alpha, doubt = acceleration(s, a, n_a, n_f), s.doubt[row_of(s.rows, a, n_a)]
+    alpha, doubt = acceleration(s, a, n_a, n_f), s.unsure[row_of(s.rows, a, n_a)]
     if alpha <= NOISE * size_of_terms(s, a, n_a, n_f) + doubt:
         return False
     return alpha > NOISE * size_of_coupled(s, a, n_a, n_f) + doubt
@@ -250,7 +250,7 @@ def adopt_modes(s: Rubbing) -> int:
     """Take over the modes decided, and hold their rows, or others that carry the load where these do not."""
     take_over_modes(s)
     stands = hold_modes(s.rows)
-    if stands and not braced(s):
+    if stands and not brace(s):
         take_over_modes(s)
         stands = hold_modes(s.rows)
     return DONE if stands else PAINLEVE_INCONSISTENT

@@ -12,7 +12,7 @@ from lcpstep.events.codes import SLIDES
 from lcpstep.events.contacts.guards import look, look_at_stage
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.hybrid.locate import UNKNOWN
-from lcpstep.events.rows.contacts import still
+from lcpstep.events.rows.contacts import still_below
 from lcpstep.kernels.dop853 import STAGES
 from lcpstep.kernels.roundings import NOISE, RESOLUTION
 from lcpstep.kernels.vectors import copy
@@ -49,7 +49,7 @@ def locate(s: Rubbing, g: int, h: float, longest: float) -> float:
 
 def jumps(s: Rubbing, g: int, tau: float) -> bool:
     """Whether guard g is far from zero where its slope says that it is zero: a force has jumped, or a belt."""
-    least = still(s.rows, s.n_j + s.n_c + g // GUARDS) if of_sliding(s, g) else s.band[g]
+    least = still_below(s.rows, s.n_j + s.n_c + g // GUARDS) if of_sliding(s, g) else s.band[g]
     return abs(s.value[g]) > least and abs(missing(s, g)) > NOISE * (abs(s.rows.t0) + tau)
 
 

@@ -76,7 +76,7 @@ def rejoin(s: Rubbing) -> None:
         s.parting[c] = 0
 
 
-def approaches(s: Rubbing) -> bool:
+def close_or_find_approach(s: Rubbing) -> bool:
     """Whether a contact on its surface approaches it; one there without speed to rounding is closed.
 
     By the law u + r u- < 0 of what has come to its surface at a corner, beyond which it may move away.

@@ -19,7 +19,7 @@ from lcpstep.events.contacts.held import right_hand_side
 from lcpstep.events.contacts.impact import find_who_may_stick
 from lcpstep.events.contacts.modes import adopt_modes, decide
 from lcpstep.events.contacts.state import GUARDS, Rubbing
-from lcpstep.events.rows.contacts import hold_modes, pull
+from lcpstep.events.rows.contacts import friction_ratio, hold_modes
 from lcpstep.events.rows.equations import free_motion
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.kernels.vectors import copy
@@ -91,7 +91,7 @@ def forces(s: Rubbing, t: float, x: Any) -> Any:
 @cython.ccall
 def pulls(s: Rubbing) -> Any:
     """Friction that comes with each normal force under the modes held, (n_c,): -s mu of a contact that slides."""
-    return np.array([pull(s.rows, s.n_j + c) for c in range(s.n_c)])
+    return np.array([friction_ratio(s.rows, s.n_j + c) for c in range(s.n_c)])
 
 
 @cython.ccall

@@ -20,13 +20,13 @@ cdef class Rubbing(RungeKutta):
     cdef bint plain, risen, sharing
     cdef Doubles q, v, a_free, a, force, dy, seen, dv, R, MR, W
     cdef Doubles rate, bias, gap, velocity, change, multiplier, impulse, instant, paces
-    cdef Doubles shifted_rate, counted, total, loads, doubt, effect, effects
+    cdef Doubles shifted_rate, counted, total, loads, unsure, effect, effects
     cdef Doubles mu, mu_s, slip, tangential, direction, new_direction, terms, before
     cdef Doubles lands, height, rise, bend, speed, jumped, stray
     cdef Bracket bracket
     cdef readonly Motion watch
     cdef bint hopping, flying
-    cdef Py_ssize_t guards
+    cdef Py_ssize_t since_look
     cdef Indices mode, was_mode, new_mode, loaded, new_loaded, may_stick, touches, parting, tried, hops, carried, leader
     cdef Doubles value, band, samples
     cdef Indices armed

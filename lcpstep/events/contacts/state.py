@@ -56,12 +56,12 @@ class Rubbing(RungeKutta):
     bracket                      in which times are sought: that of `scan`
     flying                       no contact is closed: their gaps tell all
     watch                        what looks at the guards of modes, see `switching`; None where the system has none
-    guards                       LOOKED, or since then a mode has begun (ENTERED), or velocities have jumped (JUMPED)
+    since_look                   at these LOOKED; or since then a mode has begun (ENTERED), or velocities JUMPED
     loose, stray : (n_c,)        how many contacts have a row at rest that is not held; how large an acceleration of
         such a row has been, see `loose`
     leader, sharing              whose tangent is held for that of each contact at rest, where some stand for others
     risen                        the guard found has been above its band before it falls through zero
-    doubt : (n_r,)               accelerations of rows that are not known where modes are sought, see `balance`
+    unsure : (n_r,)              accelerations of rows that are not known where modes are sought, see `balance`
     guard, found, slope          the guard that acts, when, and how fast it falls;  seen, samples    scratch
     kept_to, shown, delay        up to when a row that is not held has stayed at rest, where it has left that, both as
         fractions of the step, and how much later than it is `found` that is
@@ -108,7 +108,7 @@ class Rubbing(RungeKutta):
         self.place_marks(indices(self.marks))
         self.paced, self.loose = 0, 0
         self.bracket, self.hopping = self.scan.bracket, False
-        self.watch, self.guards = None, ENTERED
+        self.watch, self.since_look = None, ENTERED
         self.flying = False
 
     def share_rows(self) -> None:
@@ -133,7 +133,7 @@ class Rubbing(RungeKutta):
         self.dy, self.seen, self.paces = x, after(x, 2 * n), after(x, 4 * n)
         x = after(self.paces, r + 1)
         self.counted, self.total, self.loads = x, after(x, r), after(x, 2 * r)
-        self.doubt, self.effects = after(self.loads, ALL * r), after(self.loads, (ALL + 1) * r)
+        self.unsure, self.effects = after(self.loads, ALL * r), after(self.loads, (ALL + 1) * r)
         x = after(self.effects, (n + r) * (n + r))
         self.new_direction, self.slip, self.lands = x, after(x, n_c), after(x, 2 * n_c)
         self.height, self.rise, self.bend = after(x, 3 * n_c), after(x, 4 * n_c), after(x, 5 * n_c)

@@ -10,7 +10,7 @@ from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.guards import first_event, look
 from lcpstep.events.contacts.hops import carry, interrupt, landing, shortest_hop
 from lcpstep.events.contacts.loose import first_stray
-from lcpstep.events.contacts.modes import decide, undecided
+from lcpstep.events.contacts.modes import decide, mark_undecided
 from lcpstep.events.contacts.moments import jumps, locate, of_sliding
 from lcpstep.events.contacts.passing import take_over
 from lcpstep.events.contacts.state import GUARDS, Rubbing
@@ -54,13 +54,13 @@ def stride(s: Rubbing) -> int:
     code = find(s)
     if code != DONE:
         return code
-    if s.watch is not None and s.watch.culprit >= 0:
+    if s.watch is not None and s.watch.due >= 0:
         return complete_to_guard(s)
     return complete_to_event(s) if s.guard >= 0 else complete(s)
 
 
 def find(s: Rubbing) -> int:
-    """The first event within the step just made: `guard`, or `watch.culprit`, if any; a status.
+    """The first event within the step just made: `guard`, or `watch.due`, if any; a status.
 
     When, as a fraction of the step, into `found`; when hops land, into `lands`.
     """
@@ -148,7 +148,7 @@ def look_ahead(s: Rubbing, h: float) -> int:
             return NOT_FINITE
         find_standing(s)
         code = decide(s)
-        if code != DONE or ahead >= FARTHEST or (not undecided(s) and tells(s)):
+        if code != DONE or ahead >= FARTHEST or (not mark_undecided(s) and tells(s)):
             break
         ahead *= FURTHER
     hold_modes(s.rows)  # the old ones, for the rest of the step

@@ -90,7 +90,7 @@ def come_to_rest(s: Rubbing) -> bool:
     return True
 
 
-def touching(s: Rubbing, c: int, share: float) -> float:
+def closed_below(s: Rubbing, c: int, share: float) -> float:
     """The gap below which contact c is closed when another one is: rounding, and a little of the tolerance.
 
     Late times tell no better which of two gaps that close together, as at two corners of a block, was first.
@@ -118,7 +118,7 @@ def find_touching(s: Rubbing) -> None:
     """Mark the open contacts whose gap is closed to rounding or to the tolerance."""
     share = share_left(s)
     for c in range(s.n_c):
-        s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= touching(s, c, share) else 0
+        s.touches[c] = 1 if s.mode[c] != OPEN or s.gap[s.n_j + c] <= closed_below(s, c, share) else 0
 
 
 def find_coming(s: Rubbing, c: int) -> None:
@@ -128,7 +128,9 @@ def find_coming(s: Rubbing, c: int) -> None:
     these are struck at once. After a hop the time is known better: to the same share of the hop's length.
     """
     u, share = s.velocity[s.n_j + c], share_left(s)
-    moment = min(touching(s, c, share) / -u, TOGETHER * (s.rows.t0 - s.rows.struck[c])) if u < 0.0 else 0.0
+    moment = (
+        min(closed_below(s, c, share) / -u, TOGETHER * (s.rows.t0 - s.rows.struck[c])) if u < 0.0 else 0.0
+    )
     for d in range(s.n_c):
         way = min(-s.velocity[s.n_j + d] * moment, share * gap_tolerance(s.rows, d))
         if s.gap[s.n_j + d] <= way:

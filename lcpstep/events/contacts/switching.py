@@ -61,7 +61,7 @@ def watch(s: Rubbing, h: float, end: float) -> int:
 
     When, as a share of h, into `found`.
     """
-    s.watch.culprit = -1
+    s.watch.due = -1
     if not end > 0.0:
         return DONE
     s.watch.now, s.watch.t_end = s.rows.t0, s.rows.border()
@@ -70,7 +70,7 @@ def watch(s: Rubbing, h: float, end: float) -> int:
         return NOT_FINITE
     if k < 0:
         return DONE
-    s.watch.culprit, s.watch.armed[k] = k, s.watch.was_armed
+    s.watch.due, s.watch.armed[k] = k, s.watch.was_armed
     if turns_back(s.watch):
         s.watch.now = s.rows.t0 + s.watch.place * h
         return NOT_TRANSVERSAL
@@ -89,19 +89,19 @@ def reach_guard(s: Rubbing, h: float) -> float:
 def look_at_guards(s: Rubbing) -> None:
     """After the start of a mode, or a jump of velocities: a guard that is passed acts."""
     s.watch.now = s.rows.t0
-    s.watch.culprit = enter(s.watch, -1, s.guards == JUMPED)
-    s.guards = LOOKED
-    if s.watch.culprit >= 0:
+    s.watch.due = enter(s.watch, -1, s.since_look == JUMPED)
+    s.since_look = LOOKED
+    if s.watch.due >= 0:
         s.rows.next = SWITCH
 
 
 def switch(s: Rubbing) -> int:
     """The guard acts at the base: log, reset, new mode; contacts closed that stay so are found by `jump`."""
-    k = s.watch.culprit
+    k = s.watch.due
     if s.watch.switches >= s.watch.log_capacity:
         s.rows.next = SWITCH
         return BUFFER_FULL
-    s.watch.now, s.guards = s.rows.t0, ENTERED
+    s.watch.now, s.since_look = s.rows.t0, ENTERED
     leave(s.watch, k)
     s.model.mode = s.watch.mode
     s.rows.tally.events += 1

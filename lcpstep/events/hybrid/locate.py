@@ -129,20 +129,20 @@ def first_action(s: Motion, k: int) -> tuple[float, bool]:
 def locate(s: Motion, h: float) -> float:
     """Time from now at which the guard found acts: secants on steps of that length, of which the last one is left."""
     t, most = s.now, s.t_end - s.now
-    s.culprit, s.secant, s.missed = s.acting, s.slope / h, nan
+    s.due, s.secant, s.missed = s.acting, s.slope / h, nan
     tau = s.meet(t, min(s.place * h, most), most, FAR * h, REFINEMENTS)
     if abs(guard(s.m, s.mode, s.acting, t + tau, s.y_new) - s.event_at) > JUMP * s.slope:
-        tau = min(bisect(s, s.acting, h, s.place), most)
+        tau = min(bisect(s, h), most)
         s.step(t, tau)
     return tau
 
 
-def bisect(s: Motion, k: int, h: float, at: float) -> float:
+def bisect(s: Motion, h: float) -> float:
     """The same for a guard that jumps, which secants cannot follow: bisection on the dense output."""
-    low, high = max(at - 1.0 / PARTS, 0.0), min(at + 1.0 / PARTS, 1.0)
+    low, high = max(s.place - 1.0 / PARTS, 0.0), min(s.place + 1.0 / PARTS, 1.0)
     s.scan.bracket.begin(low, high, False, 0.5 * (low + high))
     while s.scan.bracket.seek(RESOLUTION):
         s.at(s.scan.bracket.x, s.y_new)
-        g = guard(s.m, s.mode, k, s.now + s.scan.bracket.x * h, s.y_new)
+        g = guard(s.m, s.mode, s.acting, s.now + s.scan.bracket.x * h, s.y_new)
         s.scan.bracket.take(-1.0 if g < s.event_at else 1.0, 0.0)
     return s.scan.bracket.b * h

@@ -40,16 +40,16 @@ class Switching(Course):
 
     def stage(self, goal: int) -> int:
         """Whether the motion is to begin, or a switch is due, or it goes on."""
-        if not self.s.begun or self.s.culprit >= 0:
+        if not self.s.begun or self.s.due >= 0:
             return DUE
         return AHEAD if self.s.now < self.s.t_end and self.s.steps < goal else ARRIVED
 
     def happen(self) -> int:
         """Begin, or switch; a status."""
         if self.s.begun:
-            return settle(self.s, self.s.culprit)
+            return settle(self.s)
         self.s.begun = True
-        self.s.culprit = enter(self.s, -1, False)
+        self.s.due = enter(self.s, -1, False)
         return DONE
 
     def refusal(self) -> int:
@@ -84,11 +84,11 @@ def advance(s: Motion) -> int:
             s.keep(h)
             s.at(s.place, s.y_new)
             copy(s.y, s.y_new, s.n)
-            s.culprit, s.now = k, t + s.place * h
+            s.due, s.now = k, t + s.place * h
             return NOT_TRANSVERSAL
         tau = locate(s, h)
         s.complete(t, tau)
-        s.culprit = k
+        s.due = k
     s.keep(tau)
     copy(s.y, s.y_new, s.n)
     s.now = s.t_end if tau >= left else t + tau
@@ -98,18 +98,16 @@ def advance(s: Motion) -> int:
     return DONE
 
 
-def settle(s: Motion, k: int) -> int:
-    """Guard k acts, and after it whatever acts at the same instant."""
-    while k >= 0:
+def settle(s: Motion) -> int:
+    """The guard by which a switch is due acts, and after it whatever acts at the same instant."""
+    while s.due >= 0:
         if s.switches >= s.log_capacity:
-            s.culprit = k
             return BUFFER_FULL
-        k = enter(s, leave(s, k), False)
+        s.due = enter(s, leave(s, s.due), False)
         if s.stalled > MAX_STALLED:
             return ENDLESS_SWITCHING
-        if s.events >= s.max_events and k >= 0:
+        if s.events >= s.max_events and s.due >= 0:
             return TOO_MANY_EVENTS
-    s.culprit = -1
     return DONE
 
 

@@ -126,7 +126,7 @@ def undecided(scene: HybridScene, motion: Motion, status: Status, log: Array) ->
         )
     return (
         f"at {t} the motion in mode {names[motion.mode]!r} touches the guard towards "
-        f"{names[motion.m.target_of(motion.culprit)]!r} and turns back within the tolerance: the guard is not "
+        f"{names[motion.m.target_of(motion.due)]!r} and turns back within the tolerance: the guard is not "
         f"transversal there, and whether it acts is undecided"
     )
 

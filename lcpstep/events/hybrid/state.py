@@ -24,7 +24,7 @@ class Motion(RungeKutta):
 
     t_end, longest, max_events   span and bounds: of the longest step, of switches
     now, mode, begun             where it is, and whether guards have been looked at
-    culprit                      the guard by which a switch is due, or -1
+    due                          the guard by which a switch is due, or -1
     steps, events, stalled       taken; switches, those at one instant
     last_switch, brief           time of it; how long a mode lasted at most that a guard left within its band, of late
     acting, place                the guard found to act within a step, or -1; where, as a fraction of it
@@ -66,7 +66,7 @@ class Motion(RungeKutta):
     def start_from(self, t: float, mode: int) -> None:
         """Begin at time t in a mode with the state y."""
         self.begin(FIRST_STEP * self.longest)
-        self.now, self.last_switch, self.mode, self.begun, self.culprit = t, -inf, mode, False, -1
+        self.now, self.last_switch, self.mode, self.begun, self.due = t, -inf, mode, False, -1
         self.acting, self.place, self.slope, self.curvature = -1, 2.0, 0.0, 0.0
         self.event_at, self.was_armed, self.brief = 0.0, False, 0.0
         self.secant = self.missed = self.tried = 0.0
@@ -100,7 +100,7 @@ class Motion(RungeKutta):
 
     def miss(self, t: float, tau: float) -> float:
         """By a secant of the guard that acts, with the slope that the last change has met where it did."""
-        g, before = guard(self.m, self.mode, self.culprit, t + tau, self.y_new) - self.event_at, self.missed
+        g, before = guard(self.m, self.mode, self.due, t + tau, self.y_new) - self.event_at, self.missed
         if g * before < 0.0 or abs(g) < 0.5 * abs(before):
             self.secant = (g - before) / (tau - self.tried)
         self.missed, self.tried = g, tau

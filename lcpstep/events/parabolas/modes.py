@@ -14,7 +14,7 @@ from lcpstep.events.parabolas.forces import contact_forces, stands
 from lcpstep.events.parabolas.impact import strike
 from lcpstep.events.parabolas.state import Mechanism
 from lcpstep.events.rows.chatter import disturbs, find_over, take_along, tell_over
-from lcpstep.events.rows.cycle import ROUNDS, fades, look_back, recurs, sum_up
+from lcpstep.events.rows.cycle import ROUNDS, close_if_faded, look_back, recurs, sum_up
 from lcpstep.events.rows.held import hold_joints, is_held, solve_held
 from lcpstep.events.rows.keep import keep_event, put_on_account, tell
 from lcpstep.kernels.recurrence import FOR_EVER, looks_back
@@ -29,7 +29,7 @@ def jump(s: Mechanism) -> int:
     if s.rounds == 0:
         begin_instant(s)
     while s.rounds < ROUNDS:
-        if not approaches(s):
+        if not close_or_find_approach(s):
             rejoin(s)
             s.rounds = 0
             if s.tally.stalled > s.stalled + 1:  # the impacts of one instant count as one
@@ -42,7 +42,7 @@ def jump(s: Mechanism) -> int:
             return TOO_MANY_EVENTS
         ratio = recurs(s) if s.rounds > 0 else 0.0
         if ratio >= FOR_EVER:
-            if not fades(s):
+            if not close_if_faded(s):
                 return TOO_MANY_EVENTS
         elif ratio > 0.0:
             sum_up(s, ratio)
@@ -100,7 +100,7 @@ def rejoin(s: Mechanism) -> None:
         s.parting[c] = 0
 
 
-def approaches(s: Mechanism) -> bool:
+def close_or_find_approach(s: Mechanism) -> bool:
     """Whether a contact on the surface approaches it; one there without speed to rounding is closed."""
     hit = False
     find_come(s)

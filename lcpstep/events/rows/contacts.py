@@ -195,14 +195,14 @@ def speed_tolerance(s: Contacts, i: int) -> float:
     return least_speed(s, i, s.v)
 
 
-def still(s: Contacts, i: int) -> float:
+def still_below(s: Contacts, i: int) -> float:
     """The velocity of row i below which it is zero."""
     return NOISE * size_of(s, i, s.rate[i], s.v) + STILL * speed_tolerance(s, i)
 
 
 def has_stopped(s: Contacts, c: int) -> bool:
     """Whether contact c has no sliding velocity, or none that can be told from zero."""
-    return s.n_t == 0 or abs(sliding(s, c)) <= still(s, s.n_j + s.n_c + c)
+    return s.n_t == 0 or abs(sliding(s, c)) <= still_below(s, s.n_j + s.n_c + c)
 
 
 def rubs(s: Contacts, c: int) -> bool:
@@ -220,7 +220,7 @@ def of_tangent(s: Contacts, x: Doubles, c: int) -> float:
     return x[s.n_c + c] if s.n_t > 0 else 0.0
 
 
-def pull(s: Contacts, i: int) -> float:
+def friction_ratio(s: Contacts, i: int) -> float:
     """How much of the `other` force of its contact comes with that of row i.
 
     -s mu of the tangent's with a normal that slides or leans; the inverse of the normal's where the tangent of a
@@ -240,7 +240,7 @@ def hold_row(s: Contacts, i: int) -> bool:
     """
     if s.n_t > 0:
         leans = i >= s.n_j and s.mode[(i - s.n_j) % s.n_c] == LEANS
-        s.share[i], s.either[i] = pull(s, i), 1 if leans else 0
+        s.share[i], s.either[i] = friction_ratio(s, i), 1 if leans else 0
     return hold(s, i)
 
 

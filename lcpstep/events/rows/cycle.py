@@ -93,7 +93,7 @@ def sum_up(s: Contacts, ratio: float) -> None:
     look_back(s)
 
 
-def fades(s: Contacts) -> bool:
+def close_if_faded(s: Contacts) -> bool:
     """Close the contacts that touch, if those that go on striking do so by next to nothing; whether it is so.
 
     Rounding adds up from impact to impact, and what is held from all sides may return its own rounding for ever.

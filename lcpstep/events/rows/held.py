@@ -47,7 +47,7 @@ def entry(s: Rows, i: int, k: int) -> float:
 
 
 def first_between(s: Rows, i: int, k: int) -> int:
-    """The first of the rows held still between rows i and k: `D_on` knows what joints are between contacts."""
+    """From which held row on the elimination runs: the joints are already out of `D_on`."""
     return s.n_kept if i >= s.n_j and k >= s.n_j else 0
 
 
@@ -73,7 +73,7 @@ def hold(s: Rows, i: int) -> bool:
         if m >= first:
             pivot -= s.L[k * r + m] * s.L[m * r + k]
             size += rounding
-    s.L[k * r + k], s.doubt[k] = pivot, size / abs(pivot) if pivot != 0.0 else 0.0
+    s.L[k * r + k], s.pivot_error[k] = pivot, size / abs(pivot) if pivot != 0.0 else 0.0
     if pivot > DEPENDENT * size or (pivot < -DEPENDENT * size and s.either[i] == 1):
         s.n_held = k + 1
         return True
@@ -89,7 +89,7 @@ def grow(s: Rows, i: int, m: int, start: int) -> float:
     if s.n_t > 0:
         up, more = what_is_left(s, m, k, first)
     s.L[m * r + k], s.L[k * r + m] = up, low / s.L[m * r + m]
-    return abs(low / s.L[m * r + m]) * (more + abs(up) * s.doubt[m]) + abs(up / s.L[m * r + m]) * less
+    return abs(low / s.L[m * r + m]) * (more + abs(up) * s.pivot_error[m]) + abs(up / s.L[m * r + m]) * less
 
 
 def what_is_left(s: Rows, i: int, k: int, first: int) -> tuple[float, float]:

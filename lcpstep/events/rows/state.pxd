@@ -10,5 +10,5 @@ cdef class Rows(Clock):
     cdef Sudden sudden
     cdef double gap_drift
     cdef Doubles a_free, force, work, shifted, M, R, MR, D, G, rate, bias, near, further
-    cdef Doubles held, change, share, doubt, L, bias_on, R_on, MR_on, D_on, idle
+    cdef Doubles held, change, share, pivot_error, L, bias_on, R_on, MR_on, D_on, idle
     cdef Indices row, either, rests, reach, moved

@@ -33,7 +33,7 @@ class Rows(Clock):
     held : (n_r,)             multipliers of the rows held
     share : (n_r,)            force of the `other` row of its contact that comes with that of a row held
     either : (n_r,)           whether a row may be held though its force would move it the other way: `held.hold`
-    L : (n_r, n_r)            factors of the matrix of the rows held;  doubt   relative error of a pivot, in roundings
+    L : (n_r, n_r)            factors of the matrix of the rows held;  pivot_error   relative, in roundings
     idle : (n_j, n_j)         what joints that say the same can take from each other, see `loads`
     rests : (n_r,)            whether the velocity of a row is to be zero, held or not: of joints always
     reach : (n_r,)            coordinates that move each row, see `equations.reach_of`
@@ -89,8 +89,8 @@ class Rows(Clock):
         self.held = after(self.further, r)
         self.change = after(self.held, r)
         self.share = after(self.change, r)
-        self.doubt = after(self.share, r)
-        self.L = after(self.doubt, r)
+        self.pivot_error = after(self.share, r)
+        self.L = after(self.pivot_error, r)
         self.bias_on, self.R_on, self.MR_on, self.D_on = self.bias, self.R, self.MR, self.D
         self.idle = self.D
         if n_j > 0:

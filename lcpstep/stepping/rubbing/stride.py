@@ -10,14 +10,14 @@ from lcpstep.events.contacts.balance import lets_go
 from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.loose import first_stray
-from lcpstep.events.contacts.modes import decide, keep_mode, undecided
+from lcpstep.events.contacts.modes import decide, keep_mode, mark_undecided
 from lcpstep.events.contacts.moments import of_sliding
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.contacts.step import mark_resting
 from lcpstep.events.contacts.surfaces import FREE
 from lcpstep.events.hybrid.roots import NONE
 from lcpstep.events.rows.chatter import moves
-from lcpstep.events.rows.contacts import add_impulse, hold_modes, still
+from lcpstep.events.rows.contacts import add_impulse, hold_modes, still_below
 from lcpstep.events.rows.equations import list_gaps, respond_to
 from lcpstep.events.rows.jumps import breaks
 from lcpstep.events.rows.keep import keep, keep_awaited, keep_event
@@ -124,7 +124,7 @@ def turns_at_once(s: Strides, g: int) -> bool:
     """Whether guard g, located within the step, is a sliding velocity that is not zero there: its belt has jumped."""
     if not of_sliding(s, g):
         return False
-    none = still(s.rows, s.n_j + s.n_c + g // GUARDS)
+    none = still_below(s.rows, s.n_j + s.n_c + g // GUARDS)
     rounding = NOISE * (abs(s.rows.t0) + s.tau) * abs(s.begin_slope[g])
     return s.begin_value[g] >= -none and abs(s.value[g]) > max(none, rounding)
 
@@ -163,7 +163,7 @@ def look_ahead(s: Strides, c: int, h: float, tau: float) -> int:
         code = decide(s)
         if ahead > LOOK_AHEAD * h:
             leave_to_guards(s, c)
-        waits = code == DONE and undecided(s)
+        waits = code == DONE and mark_undecided(s)
         # Another mode, or its load left to others that hold it too
         changes = (s.new_mode[c] != s.mode[c] and tells(s)) or s.new_loaded[c] != s.loaded[c]
         hold_modes(s.rows)  # the old ones, for what is stepped further, and the rest of the step
