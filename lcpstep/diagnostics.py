@@ -26,8 +26,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lagrangian import Harmonic, LinearContacts, LinearSystem, Scene, checks
-from lcpstep.kernels.gauss import gauss
 from lcpstep.kernels import states
+from lcpstep.kernels.gauss import gauss
 from lcpstep.model import model, tangent_model
 from lcpstep.stepping.sparse.equations import Equations
 from lcpstep.trajectory import Kind, Trajectory

@@ -16,7 +16,6 @@ from lagrangian.scenes.double_pendulum import (
 from lagrangian.scenes.pendulum import tension
 from lagrangian.scenes.rocking_block import impact_ratio, rocking_times
 from lagrangian.scenes.slider_crank import energy
-from lcpstep.kernels.gauss import gauss
 from lcpstep.hard.check import (
     FIRST_ORDER,
     SECOND_ORDER,
@@ -26,6 +25,7 @@ from lcpstep.hard.check import (
     sample_times,
     states,
 )
+from lcpstep.kernels.gauss import gauss
 from lcpstep.trajectory import Kind
 
 SWING = 2.0  # period of pendulums of a metre [s]

@@ -31,6 +31,7 @@ from lcpstep.kernels.vectors import clear, copy, largest
 from lcpstep.lcp.kernel import solve_small
 from lcpstep.lcp.workspace import Workspace
 from lcpstep.pointers import Doubles, abs, after, max, min
+from lcpstep.shelf import Shelf
 
 DEGENERATE = 1e-13  # determinant, relative to its terms, below which normal and tangent are one direction
 ROUNDING = 1e-13  # relative: a sliding velocity this small has no sign
@@ -71,13 +72,9 @@ class ContactProblem:
         self.mobility, self.rate = doubles(self.arrays["mobility"]), doubles(self.arrays["rate"])
         self.impulse, self.mu = doubles(self.arrays["impulse"]), doubles(mu)
         self.space = np.zeros(unknowns * unknowns + 2 * unknowns + 5 * n_c)
-        self.W = doubles(self.space)
-        self.b = after(self.W, unknowns * unknowns)
-        self.z = after(self.b, unknowns)
-        self.slow = after(self.z, unknowns)
-        self.fast = after(self.slow, n_c)
-        self.made = after(self.fast, n_c)
-        self.sum = after(self.made, n_c)
+        x = Shelf(self.space)
+        self.W, self.b, self.z = x.take(unknowns * unknowns), x.take(unknowns), x.take(unknowns)
+        self.slow, self.fast, self.made, self.sum = x.take(n_c), x.take(n_c), x.take(n_c), x.take(unknowns)
         self.lists = np.zeros(n, dtype=np.intp), np.zeros(n_c, dtype=np.intp)
         self.ids, self.carrier = indices(self.lists[0]), indices(self.lists[1])
         largest = unknowns if unknowns > n_c else n_c

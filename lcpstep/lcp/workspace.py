@@ -9,8 +9,7 @@ from __future__ import annotations
 import cython
 import numpy as np
 
-from lcpstep.arrays import doubles, indices
-from lcpstep.pointers import after, indices_after
+from lcpstep.shelf import IndexShelf, Shelf
 
 VECTORS = 15  # rows of n + 1 numbers, and of indices of 2 n + 1:
 LISTS = 12
@@ -57,34 +56,15 @@ class Workspace:
         self.ray_dz_0 = self.ray_z_0 = 0.0
         self.iterations = self.waiting = 0
         self.thorough = False
-        self.columns = doubles(self.numbers)
-        self.inverse = after(self.columns, (n + 1) * n)
-        self.factor = after(self.inverse, n * n)
-        m = n + 1
-        self.scaled_b = after(self.factor, n * n)
-        self.row_scale = after(self.scaled_b, m)
-        self.column_scale = after(self.row_scale, m)
-        self.x = after(self.column_scale, m)
-        self.dx = after(self.x, m)
-        self.slack = after(self.dx, m)
-        self.dslack = after(self.slack, m)
-        self.left = after(self.dslack, m)
-        self.trial = after(self.left, m)
-        self.size = after(self.trial, m)
-        self.ray_direction = after(self.size, m)
-        self.ray_start = after(self.ray_direction, m)
-        self.best = after(self.ray_start, m)
-        self.changes, self.reciprocal = self.inverse, after(self.best, m)
-        m = 2 * n + 1
-        self.basic = indices(self.lists)
-        self.tight = indices_after(self.basic, m)
-        self.z_place = indices_after(self.tight, m)
-        self.w_place = indices_after(self.z_place, m)
-        self.tied = indices_after(self.w_place, m)
-        self.order = indices_after(self.tied, m)
-        self.active = indices_after(self.order, m)
-        self.chosen = indices_after(self.active, m)
-        self.nonbasic = indices_after(self.chosen, m)
-        self.place = indices_after(self.nonbasic, m)
-        self.row = indices_after(self.place, m)
-        self.made = indices_after(self.row, m)
+        m, k = n + 1, 2 * n + 1
+        x = Shelf(self.numbers)
+        self.columns, self.inverse, self.factor = x.take((n + 1) * n), x.take(n * n), x.take(n * n)
+        self.scaled_b, self.row_scale, self.column_scale, self.x = x.take(m), x.take(m), x.take(m), x.take(m)
+        self.dx, self.slack, self.dslack, self.left = x.take(m), x.take(m), x.take(m), x.take(m)
+        self.trial, self.size, self.ray_direction, self.ray_start = x.take(m), x.take(m), x.take(m), x.take(m)
+        self.best, self.reciprocal = x.take(m), x.take(2 * n)
+        self.changes = self.inverse
+        y = IndexShelf(self.lists)
+        self.basic, self.tight, self.z_place, self.w_place = y.take(k), y.take(k), y.take(k), y.take(k)
+        self.tied, self.order, self.active, self.chosen = y.take(k), y.take(k), y.take(k), y.take(k)
+        self.nonbasic, self.place, self.row, self.made = y.take(k), y.take(k), y.take(k), y.take(k)

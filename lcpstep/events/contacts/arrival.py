@@ -12,9 +12,9 @@ from lcpstep.events.contacts.leaning import wavers
 from lcpstep.events.contacts.parting import part_before
 from lcpstep.events.contacts.state import GUARDS, Rubbing
 from lcpstep.events.contacts.surfaces import find_coming, find_touching, lift
-from lcpstep.events.rows.accelerations import accelerate_as_held
 from lcpstep.events.rows.contacts import gap_tolerance, has_stopped, still_below
 from lcpstep.events.rows.equations import acceleration_of
+from lcpstep.events.rows.problem import accelerate_as_held
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.pointers import abs, max
 

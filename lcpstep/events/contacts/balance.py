@@ -15,8 +15,8 @@ from lcpstep.events.contacts.equations import force_noise, measure, share_left
 from lcpstep.events.contacts.modes import adopt_modes, decide
 from lcpstep.events.contacts.state import Rubbing
 from lcpstep.events.contacts.surfaces import closed_below
-from lcpstep.events.rows.accelerations import accelerate_as_held, accelerate_on_joints
 from lcpstep.events.rows.equations import acceleration_of
+from lcpstep.events.rows.problem import accelerate_as_held, accelerate_on_joints
 from lcpstep.kernels.status import DONE, NOT_FINITE
 from lcpstep.kernels.vectors import clear, copy_indices
 from lcpstep.pointers import abs, min

@@ -16,10 +16,10 @@ from lcpstep.events.codes import LEANS, OPEN, SLIDES, STICKS
 from lcpstep.events.contacts.equations import force_noise, most_friction, size_of_loads
 from lcpstep.events.contacts.leaning import gives
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.accelerations import accelerate_as_held
 from lcpstep.events.rows.contacts import hold_modes
 from lcpstep.events.rows.equations import acceleration_of, size_of_acceleration
 from lcpstep.events.rows.held import is_held
+from lcpstep.events.rows.problem import accelerate_as_held
 from lcpstep.kernels.roundings import NOISE
 from lcpstep.pointers import abs, max
 

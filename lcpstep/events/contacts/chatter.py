@@ -15,7 +15,6 @@ from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.held import know_rows
 from lcpstep.events.contacts.impact import find_who_may_stick
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.accelerations import accelerate
 from lcpstep.events.rows.chatter import (
     disturbs,
     find_over,
@@ -40,6 +39,7 @@ from lcpstep.events.rows.contacts import (
 from lcpstep.events.rows.equations import acceleration_of, size_of, velocity_of
 from lcpstep.events.rows.held import constrain, is_held
 from lcpstep.events.rows.keep import put_on_account
+from lcpstep.events.rows.problem import accelerate
 from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import copy
 from lcpstep.pointers import abs, after, max, nan

@@ -15,9 +15,8 @@ from lcpstep.events.codes import JUMP, OPEN
 from lcpstep.events.contacts.equations import measure
 from lcpstep.events.contacts.impact import pose, strike_with
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.accelerations import accelerate_on_joints
 from lcpstep.events.rows.on_joints import acceleration_on_joints
-from lcpstep.events.rows.problem import row_of
+from lcpstep.events.rows.problem import accelerate_on_joints, row_of
 from lcpstep.kernels.coulomb import solve_contacts
 from lcpstep.kernels.energetic import strike_in_turn
 from lcpstep.kernels.status import BUFFER_FULL, DONE, NOT_FINITE, PAINLEVE_INCONSISTENT

@@ -10,9 +10,9 @@ import cython
 from lcpstep.events.codes import EDGE, LEANS, SLIDES, STICKS
 from lcpstep.events.contacts.equations import force_noise
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.accelerations import accelerate_as_held
 from lcpstep.events.rows.contacts import hold_modes
 from lcpstep.events.rows.held import constrain
+from lcpstep.events.rows.problem import accelerate_as_held
 from lcpstep.kernels.vectors import clear, copy, copy_indices, product
 from lcpstep.pointers import abs, after
 

@@ -19,12 +19,12 @@ from lcpstep.events.contacts.equations import let_stick
 from lcpstep.events.contacts.leaning import stand, stand_alone
 from lcpstep.events.contacts.several import opened_or_closed
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.accelerations import accelerate_on_joints
 from lcpstep.events.rows.contacts import hold_modes
 from lcpstep.events.rows.equations import size_of_acceleration
 from lcpstep.events.rows.keep import tell
 from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
 from lcpstep.events.rows.problem import (
+    accelerate_on_joints,
     fill,
     leave_independent,
     list_unknowns,

@@ -13,11 +13,11 @@ from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.equations import measure, renew_friction
 from lcpstep.events.contacts.modes import decide
 from lcpstep.events.contacts.state import Rubbing
-from lcpstep.events.rows.accelerations import accelerate, accelerate_on_joints
 from lcpstep.events.rows.contacts import gap_tolerance, hold_modes
 from lcpstep.events.rows.equations import acceleration_of
 from lcpstep.events.rows.held import hold_joints
 from lcpstep.events.rows.on_joints import is_led
+from lcpstep.events.rows.problem import accelerate, accelerate_on_joints
 from lcpstep.kernels.status import DONE
 from lcpstep.pointers import abs, min
 

@@ -11,14 +11,13 @@ import cython
 
 from lcpstep.events.codes import OPEN
 from lcpstep.events.parabolas.state import Mechanism
-from lcpstep.events.rows.accelerations import accelerate_on_joints
 from lcpstep.events.rows.chatter import CHECKED
 from lcpstep.events.rows.contacts import hold_modes, list_multipliers
 from lcpstep.events.rows.equations import size_of, size_of_acceleration
 from lcpstep.events.rows.held import DRIFT, balance, constrain, contradiction, hold, hold_joints, solve_held
 from lcpstep.events.rows.loads import unload
 from lcpstep.events.rows.on_joints import acceleration_on_joints, can_bear
-from lcpstep.events.rows.problem import fill
+from lcpstep.events.rows.problem import accelerate_on_joints, fill
 from lcpstep.kernels.coulomb import solve_contacts
 from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.status import DONE, JOINTS_FAILED

@@ -14,7 +14,6 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.arrays import doubles, indices
 from lcpstep.events.codes import BEGIN, LEANS, OPEN, SLIDES, STICKS
 from lcpstep.events.rows.equations import least_gap, least_speed, size_of
 from lcpstep.events.rows.held import constrain, hold, hold_joints, is_held
@@ -25,7 +24,8 @@ from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.together import gap_rounding
 from lcpstep.kernels.vectors import add, product, size_of_product
-from lcpstep.pointers import Doubles, abs, after, indices_after, inf, max
+from lcpstep.pointers import Doubles, abs, after, inf, max
+from lcpstep.shelf import IndexShelf, Shelf
 
 STILL = 100.0  # tolerances: a sliding velocity this small at the start, or at an event, is zero
 
@@ -64,35 +64,24 @@ class Contacts(Rows):
         self.next, self.culprit, self.mapped, self.rounds, self.stalled = BEGIN, -1, False, 0, 0
         self.problem = ContactProblem(np.zeros(n_c), self.n_t > 0, r, False)
         self.contact_numbers = np.zeros(4 * n + 7 * r + 12 * n_c)
-        self.a = doubles(self.contact_numbers)
-        self.dv = after(self.a, n)
-        self.each = after(self.dv, n)
-        self.effect = after(self.each, n)
-        self.multiplier = after(self.effect, n)
-        self.gap = after(self.multiplier, r)
-        self.velocity = after(self.gap, r)
-        self.impulse = after(self.velocity, r)
-        self.turn_impulse = after(self.impulse, r)
-        self.turn_velocity = after(self.turn_impulse, r)
-        self.instant = after(self.turn_velocity, r)
-        self.terms = after(self.instant, r)
-        self.owed = after(self.terms, 2 * n_c)
-        self.before = after(self.owed, 2 * n_c)
-        self.curve = after(self.before, n_c)
-        self.struck = after(self.curve, n_c)
-        self.since = after(self.struck, n_c)
-        self.left = after(self.since, n_c)
-        self.chatter_end = after(self.left, n_c)
-        self.direction = after(self.chatter_end, n_c)
-        self.was_direction = after(self.direction, n_c)
+        x = Shelf(self.contact_numbers)
+        self.a, self.dv, self.each = x.take(n), x.take(n), x.take(n)
+        self.effect = x.take(n + r)
+        self.multiplier, self.gap, self.velocity = after(self.effect, n), x.take(r), x.take(r)
+        self.impulse, self.turn_impulse, self.turn_velocity, self.instant = (
+            x.take(r),
+            x.take(r),
+            x.take(r),
+            x.take(r),
+        )
+        self.terms, self.owed, self.before = x.take(2 * n_c), x.take(2 * n_c), x.take(n_c)
+        self.curve, self.struck, self.since, self.left = x.take(n_c), x.take(n_c), x.take(n_c), x.take(n_c)
+        self.chatter_end, self.direction, self.was_direction = x.take(n_c), x.take(n_c), x.take(n_c)
         self.marks = np.zeros(7 * n_c, dtype=np.intp)
-        self.mode = indices(self.marks)
-        self.was_mode = indices_after(self.mode, n_c)
-        self.tried = indices_after(self.was_mode, n_c)
-        self.loaded = indices_after(self.tried, n_c)
-        self.may_stick = indices_after(self.loaded, n_c)
-        self.touches = indices_after(self.may_stick, n_c)
-        self.parting = indices_after(self.touches, n_c)
+        k = IndexShelf(self.marks)
+        self.mode, self.was_mode, self.tried = k.take(n_c), k.take(n_c), k.take(n_c)
+        self.loaded, self.may_stick, self.touches = k.take(n_c), k.take(n_c), k.take(n_c)
+        self.parting = k.take(n_c)
         # Of their owner: the state, and friction, if there is any
         self.q, self.v = self.a, self.dv
         self.mu, self.mu_s, self.rough = self.before, self.before, self.may_stick

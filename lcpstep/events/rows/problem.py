@@ -1,7 +1,12 @@
 """The complementarity problem of closed contacts, on the joints (`rows.on_joints`), as kernels.
 
 The same problem has impulses (`impact`) or forces (`modes`) for its unknowns; see `kernels.coulomb` for its form. A
-contact that slides has its friction in the column of its normal, one that may stick has an unknown of its own.
+contact that slides has its friction in the column of its normal, one that may stick has an unknown of its own. With
+the joints alone, or with all that the modes hold, accelerations are
+
+    M a = M a_free + R_h^T lambda,      R_h a + bias_h = 0      h: the rows held
+
+Source: F. Pfeiffer, C. Glocker, Multibody Dynamics with Unilateral Contacts (Wiley 1996), chapter 5.
 """
 
 from __future__ import annotations
@@ -9,12 +14,13 @@ from __future__ import annotations
 import cython
 
 from lcpstep.events.codes import OPEN
-from lcpstep.events.rows.contacts import Contacts, rubs
+from lcpstep.events.rows.contacts import Contacts, list_multipliers, rubs
 from lcpstep.events.rows.equations import size_of_acceleration
+from lcpstep.events.rows.held import constrain, hold_joints
 from lcpstep.events.rows.loads import unload
 from lcpstep.kernels.coulomb import solve_contacts
 from lcpstep.kernels.roundings import NOISE
-from lcpstep.kernels.vectors import clear, largest
+from lcpstep.kernels.vectors import clear, copy, largest
 from lcpstep.pointers import Indices, abs, after
 
 SMALL = 1e-12  # of the largest acceleration: as much as differences of callbacks leave of one that is none
@@ -115,3 +121,21 @@ def leave_independent(s: Contacts, n_a: int, loaded: Indices) -> None:
     unload(s, s.curve, loaded)
     for a in range(n_a):
         s.problem.impulse[a] = s.curve[s.problem.ids[a]]
+
+
+def accelerate(s: Contacts) -> None:
+    """The acceleration with the rows held, into `a`; everything must be measured."""
+    copy(s.a, s.a_free, s.n_q)
+    constrain(s, s.a, s.bias)
+
+
+def accelerate_on_joints(s: Contacts) -> None:
+    """The same with the joints alone held."""
+    hold_joints(s)
+    accelerate(s)
+
+
+def accelerate_as_held(s: Contacts) -> None:
+    """The acceleration with the rows held, and their forces by row, into `multiplier`."""
+    accelerate(s)
+    list_multipliers(s)

@@ -7,11 +7,11 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.clock import Clock
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.sudden import Sudden
-from lcpstep.pointers import after, indices_after, inf
+from lcpstep.pointers import inf
+from lcpstep.shelf import IndexShelf, Shelf
 
 
 class Rows(Clock):
@@ -73,36 +73,19 @@ class Rows(Clock):
         self.far = self.fast = self.longest = inf
         self.sudden, self.gap_drift = Sudden(), 0.0
         self.row_numbers = np.zeros(4 * n + n * n + 5 * r * n + 3 * r * r + 9 * r + n_j * n_j)
-        self.a_free = doubles(self.row_numbers)
-        self.force = after(self.a_free, n)
-        self.work = after(self.force, n)
-        self.shifted = after(self.work, n)
-        self.M = after(self.shifted, n)
-        self.R = after(self.M, n * n)
-        self.MR = after(self.R, r * n)
-        self.G = after(self.MR, r * n)
-        self.D = after(self.G, r * n)
-        self.rate = after(self.D, r * r)
-        self.bias = after(self.rate, r)
-        self.near = after(self.bias, r)
-        self.further = after(self.near, r)
-        self.held = after(self.further, r)
-        self.change = after(self.held, r)
-        self.share = after(self.change, r)
-        self.pivot_error = after(self.share, r)
-        self.L = after(self.pivot_error, r)
+        x = Shelf(self.row_numbers)
+        self.a_free, self.force, self.work, self.shifted = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.M, self.R, self.MR, self.G = x.take(n * n), x.take(r * n), x.take(r * n), x.take(r * n)
+        self.D, self.rate, self.bias = x.take(r * r), x.take(r), x.take(r)
+        self.near, self.further, self.held, self.change = x.take(r), x.take(r), x.take(r), x.take(r)
+        self.share, self.pivot_error, self.L = x.take(r), x.take(r), x.take(r * r)
         self.bias_on, self.R_on, self.MR_on, self.D_on = self.bias, self.R, self.MR, self.D
         self.idle = self.D
         if n_j > 0:
-            self.bias_on = after(self.L, r * r)
-            self.R_on = after(self.bias_on, r)
-            self.MR_on = after(self.R_on, r * n)
-            self.D_on = after(self.MR_on, r * n)
-            self.idle = after(self.D_on, r * r)
+            self.bias_on, self.R_on, self.MR_on = x.take(r), x.take(r * n), x.take(r * n)
+            self.D_on, self.idle = x.take(r * r), x.take(n_j * n_j)
         self.row_list = np.zeros(4 * r + n, dtype=np.intp)
-        self.row = indices(self.row_list)
-        self.either = indices_after(self.row, r)
-        self.rests = indices_after(self.either, r)
-        self.reach = indices_after(self.rests, r)
-        self.moved, self.n_moved = indices_after(self.reach, r), 0
+        k = IndexShelf(self.row_list)
+        self.row, self.either, self.rests, self.reach = k.take(r), k.take(r), k.take(r), k.take(r)
+        self.moved, self.n_moved = k.take(n), 0
         self.row_list[2 * r : 2 * r + n_j] = 1

@@ -11,7 +11,8 @@ from lcpstep.arrays import doubles, indices
 from lcpstep.kernels.bracket import Bracket
 from lcpstep.kernels.sudden import Sudden
 from lcpstep.lcp.workspace import Workspace
-from lcpstep.pointers import Doubles, Indices, after, indices_after, inf
+from lcpstep.pointers import inf
+from lcpstep.shelf import IndexShelf, Shelf
 
 VECTORS, NUMBERS, MARKS = 16, 31, 9  # of n_q numbers each; of n_c; of n_c whole numbers
 LISTS = 3  # of n_c whole numbers more: contacts of the problem at hand
@@ -169,10 +170,11 @@ class Work:
         self.places = np.zeros(n_q, dtype=np.intp)
         self.lcp, self.moved, self.bracket = Workspace(n_c), indices(self.places), Bracket()
         self.sudden, self.jump, self.margin = Sudden(), -inf, 0.0
-        self.place_vectors(doubles(self.numbers))
-        self.place_numbers(after(doubles(self.numbers), VECTORS * n_q))
-        self.place_marks(indices(self.marks))
-        self.place_matrices(doubles(self.matrices))
+        x = Shelf(self.numbers)
+        self.place_vectors(x)
+        self.place_numbers(x)
+        self.place_marks(IndexShelf(self.marks))
+        self.place_matrices(Shelf(self.matrices))
         self.t_step = self.sigma = self.end = self.low = self.high = self.stalled = self.settled = 0.0
         self.ahead = self.blind = self.goal = self.off = 0.0
         self.under_way = self.unchanged = self.touching = self.pausing = self.fresh = False
@@ -182,51 +184,37 @@ class Work:
         for c in range(n_c):
             self.last_coordinate[c], self.last_contact[c] = n_q - 1, n_c - 1
 
-    def place_vectors(self, x: Doubles) -> None:
-        """Numbers per coordinate, from x on; the position comes first, then the velocity."""
+    def place_vectors(self, x: Shelf) -> None:
+        """Numbers per coordinate; the position comes first, then the velocity."""
         n = self.n_q
-        self.q, self.v = x, after(x, n)
-        self.a_free, self.a = after(x, 2 * n), after(x, 3 * n)
-        self.force, self.next_force = after(x, 4 * n), after(x, 5 * n)
-        self.q_try, self.v_try = after(x, 6 * n), after(x, 7 * n)
-        self.a_try, self.jolt = after(x, 8 * n), after(x, 9 * n)
-        self.q_from, self.v_from = after(x, 10 * n), after(x, 11 * n)
-        self.a_from, self.q_time = after(x, 12 * n), after(x, 13 * n)
-        self.swing, self.v_struck = after(x, 14 * n), after(x, 15 * n)
+        self.q, self.v, self.a_free, self.a = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.force, self.next_force, self.q_try, self.v_try = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.a_try, self.jolt, self.q_from, self.v_from = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.a_from, self.q_time, self.swing, self.v_struck = x.take(n), x.take(n), x.take(n), x.take(n)
 
-    def place_numbers(self, x: Doubles) -> None:
-        """Numbers per contact, from x on; impulses come first."""
+    def place_numbers(self, x: Shelf) -> None:
+        """Numbers per contact; impulses come first."""
         n = self.n_c
-        self.impulse, self.velocity = x, after(x, n)
-        self.half, self.alpha = after(x, 2 * n), after(x, 3 * n)
-        self.bend, self.bias = after(x, 4 * n), after(x, 5 * n)
-        self.gap_try, self.gap_t = after(x, 6 * n), after(x, 7 * n)
-        self.gap_t_try, self.end_s = after(x, 8 * n), after(x, 9 * n)
-        self.last, self.force_now = after(x, 10 * n), after(x, 11 * n)
-        self.older, self.older_time = after(x, 12 * n), after(x, 13 * n)
-        self.p, self.b = after(x, 14 * n), after(x, 15 * n)
-        self.z, self.residual = after(x, 16 * n), after(x, 17 * n)
-        self.change, self.doubt = after(x, 18 * n), after(x, 19 * n)
-        self.before, self.impulse_from = after(x, 20 * n), after(x, 21 * n)
-        self.since, self.next_zero = after(x, 22 * n), after(x, 23 * n)
-        self.turned, self.turns = after(x, 24 * n), after(x, 25 * n)
-        self.hops, self.fall = after(x, 26 * n), after(x, 27 * n)
-        self.pushed, self.end_u = after(x, 28 * n), after(x, 29 * n)
-        self.gap = after(x, 30 * n)
+        self.impulse, self.velocity, self.half, self.alpha = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.bend, self.bias, self.gap_try, self.gap_t = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.gap_t_try, self.end_s, self.last, self.force_now = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.older, self.older_time, self.p, self.b = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.z, self.residual, self.change, self.doubt = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.before, self.impulse_from = x.take(n), x.take(n)
+        self.since, self.next_zero = x.take(n), x.take(n)
+        self.turned, self.turns, self.hops, self.fall = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.pushed, self.end_u, self.gap = x.take(n), x.take(n), x.take(n)
 
-    def place_marks(self, x: Indices) -> None:
-        """Whole numbers per contact, from x on: `status`, those of SEEN, others, and LISTS."""
+    def place_marks(self, x: IndexShelf) -> None:
+        """Whole numbers per contact: `status`, those of SEEN, others, and LISTS."""
         n = self.n_c
-        self.status, self.first_coordinate = x, indices_after(x, n)
-        self.last_coordinate, self.first_contact = indices_after(x, 2 * n), indices_after(x, 3 * n)
-        self.last_contact, self.hits = indices_after(x, 4 * n), indices_after(x, 5 * n)
-        self.close_hits, self.plastic = indices_after(x, 6 * n), indices_after(x, 7 * n)
-        self.grounded, self.chosen = indices_after(x, 8 * n), indices_after(x, 9 * n)
-        self.held, self.place = indices_after(x, 10 * n), indices_after(x, 11 * n)
+        self.status, self.first_coordinate, self.last_coordinate = x.take(n), x.take(n), x.take(n)
+        self.first_contact, self.last_contact = x.take(n), x.take(n)
+        self.hits, self.close_hits, self.plastic, self.grounded = x.take(n), x.take(n), x.take(n), x.take(n)
+        self.chosen, self.held, self.place = x.take(n), x.take(n), x.take(n)
 
-    def place_matrices(self, x: Doubles) -> None:
-        """Matrices, from x on."""
+    def place_matrices(self, x: Shelf) -> None:
+        """Matrices."""
         n, n_c = self.n_q, self.n_c
-        self.G, self.G_try, self.MG = x, after(x, n_c * n), after(x, 2 * n_c * n)
-        self.M, self.W = after(x, 3 * n_c * n), after(x, (3 * n_c + n) * n)
-        self.problem = after(x, (3 * n_c + n) * n + n_c * n_c)
+        self.G, self.G_try, self.MG, self.M = x.take(n_c * n), x.take(n_c * n), x.take(n_c * n), x.take(n * n)
+        self.W, self.problem = x.take(n_c * n_c), x.take(n_c * n_c)

@@ -18,7 +18,6 @@ from typing import Any
 import cython
 import numpy as np
 
-from lcpstep.arrays import doubles
 from lcpstep.events.contacts.smooth import Smooth
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.rows.loads import list_by_row
@@ -26,6 +25,7 @@ from lcpstep.events.rows.projection import push_onto_rows, put_on_rows, take_row
 from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.vectors import add, clear, copy, distance, finite, largest
 from lcpstep.pointers import Doubles, abs, after, min
+from lcpstep.shelf import Shelf
 
 ARRIVAL = 4  # place of the rates at the end of a step, after those at its stages
 
@@ -68,28 +68,16 @@ class Strides(Smooth):
         self.astray = -1
         self.span = self.rows.t_end - self.t_start
         self.size_q = self.size_v = 0.0
-        g = GUARDS * self.n_c
+        r, n, g = self.n_r, self.n, GUARDS * self.n_c
         self.arrival = after(self.K, ARRIVAL * self.n)
         self.ends = np.zeros(5 * self.n_r + 8 * g + 2 * self.n_c + 4 * self.n)
-        self.leaving = doubles(self.ends)
-        self.arriving = after(self.leaving, self.n_r)
-        self.middle = after(self.leaving, 2 * self.n_r)
-        self.push = after(self.leaving, 3 * self.n_r)
-        self.begin_value = after(self.leaving, 4 * self.n_r)
-        self.begin_slope = after(self.begin_value, g)
-        self.end_value = after(self.begin_value, 2 * g)
-        self.end_slope = after(self.begin_value, 3 * g)
-        self.middle_value = after(self.begin_value, 4 * g)
-        self.half_value = after(self.begin_value, 5 * g)
-        self.quarter_value = after(self.begin_value, 6 * g)
-        self.late_value = after(self.begin_value, 7 * g)
-        self.begin_bend = after(self.begin_value, 8 * g)
-        self.end_bend = after(self.begin_bend, self.n_c)
-        self.refined = after(self.begin_bend, 2 * self.n_c)
-        self.stored = after(self.refined, self.n)
-        self.stored_rates = after(self.refined, 2 * self.n)
-        self.stored_forces = after(self.refined, 3 * self.n)
-        self.pull = after(self.stored_forces, self.n_r)
+        x = Shelf(self.ends)
+        self.leaving, self.arriving, self.middle, self.push = x.take(r), x.take(r), x.take(r), x.take(r)
+        self.begin_value, self.begin_slope, self.end_value = x.take(g), x.take(g), x.take(g)
+        self.end_slope, self.middle_value, self.half_value = x.take(g), x.take(g), x.take(g)
+        self.quarter_value, self.late_value, self.begin_bend = x.take(g), x.take(g), x.take(self.n_c)
+        self.end_bend, self.refined, self.stored = x.take(self.n_c), x.take(n), x.take(n)
+        self.stored_rates, self.stored_forces, self.pull = x.take(n), x.take(r), x.take(self.n_q)
 
     def step(self, t: float, h: float) -> bool:
         """A step of size h from y at t to y_new; False where it is not finite, or rows cannot be held."""

@@ -19,11 +19,12 @@ from math import sqrt
 import cython
 import numpy as np
 
-from lcpstep.arrays import doubles, indices
+from lcpstep.arrays import indices
 from lcpstep.kernels.linear import cancels, factorise, solve
 from lcpstep.kernels.roundings import RESOLUTION
 from lcpstep.kernels.vectors import add, clear, copy, largest, product, size_of_product
 from lcpstep.pointers import Doubles, Indices, abs, after, inf, max
+from lcpstep.shelf import Shelf
 from lcpstep.stepping.steps import CONTRADICTION
 
 NEGLIGIBLE = 1e-7  # of a joint's mobility: a direction this stiff is another joint's, up to drift
@@ -61,20 +62,17 @@ class Elimination:
     def __init__(self, n_j: int, n_c: int, n_q: int) -> None:
         self.numbers = np.zeros((3 * n_j + 2 * n_c + 1 + VECTORS) * n_j + (2 * n_c + 2) * n_q)
         self.integers, self.n_j = np.zeros(n_j, dtype=np.intp), n_j
-        self.S, self.pivots = doubles(self.numbers), indices(self.integers)
-        self.redundant = self.swept = False
-        self.B = after(self.S, n_j * n_j)
-        self.F = after(self.B, n_j * n_j)
-        self.Z = after(self.F, n_j * n_j)
-        self.values = after(self.Z, (2 * n_c + 1) * n_j)
-        self.scale = after(self.values, n_j)
-        self.x = after(self.scale, n_j)
-        self.y = after(self.x, n_j)
-        self.r = after(self.y, n_j)
-        self.d = after(self.r, n_j)
-        self.P = after(self.d, n_j)
-        self.way = after(self.P, 2 * n_c * n_q)
-        self.size = after(self.way, n_q)
+        self.pivots, self.redundant, self.swept = indices(self.integers), False, False
+        x = Shelf(self.numbers)
+        self.S, self.B, self.F = x.take(n_j * n_j), x.take(n_j * n_j), x.take(n_j * n_j)
+        self.Z, self.values, self.scale, self.x = (
+            x.take((2 * n_c + 1) * n_j),
+            x.take(n_j),
+            x.take(n_j),
+            x.take(n_j),
+        )
+        self.y, self.r, self.d, self.P = x.take(n_j), x.take(n_j), x.take(n_j), x.take(2 * n_c * n_q)
+        self.way, self.size = x.take(n_q), x.take(n_q)
 
 
 def factorise_joints(e: Elimination, W: Doubles, stride: int, first: int) -> None:

@@ -18,6 +18,7 @@ from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.coulomb import ContactProblem
 from lcpstep.kernels.model import Model
 from lcpstep.pointers import after, indices_after
+from lcpstep.shelf import Shelf
 from lcpstep.stepping.theta_method.joint_rows import Elimination
 
 VECTORS, SQUARES = 10, 4  # of n_q numbers, and of n_q^2
@@ -94,22 +95,22 @@ class State:
         self.changed = self.moved = self.opened = 0.0
         self.record: Any = None
         self.work = np.zeros((VECTORS + SQUARES * n_q) * n_q + 2 * n_c)
-        self.next_force = doubles(self.work)
-        self.next_q = after(self.next_force, n_q)
-        self.next_v = after(self.next_q, n_q)
-        self.v_free = after(self.next_v, n_q)
-        self.q_between = after(self.v_free, n_q)
-        self.v_between = after(self.q_between, n_q)
-        self.R = after(self.v_between, n_q)
-        self.try_v = after(self.R, n_q)
-        self.try_q = after(self.try_v, n_q)
-        self.try_f = after(self.try_q, n_q)
-        self.M = after(self.try_f, n_q)
-        self.M_start = after(self.M, n_q * n_q)
-        self.A = after(self.M_start, n_q * n_q)
-        self.J = after(self.A, n_q * n_q)
-        self.far = after(self.J, n_q * n_q)
-        self.slack = after(self.far, n_c)
+        work = Shelf(self.work)
+        self.next_force, self.next_q, self.next_v, self.v_free = (
+            work.take(n_q),
+            work.take(n_q),
+            work.take(n_q),
+            work.take(n_q),
+        )
+        self.q_between, self.v_between, self.R, self.try_v = (
+            work.take(n_q),
+            work.take(n_q),
+            work.take(n_q),
+            work.take(n_q),
+        )
+        self.try_q, self.try_f, self.M = work.take(n_q), work.take(n_q), work.take(n_q * n_q)
+        self.M_start, self.A, self.J = work.take(n_q * n_q), work.take(n_q * n_q), work.take(n_q * n_q)
+        self.far, self.slack = work.take(n_c), work.take(n_c)
         x["slack"] = self.work[len(self.work) - n_c :]
 
 
@@ -220,21 +221,15 @@ class Rows:
         self.sliding, self.at_rest = after(self.H_t, n), after(self.H_t, n + n_t)
         self.elimination, self.blows = Elimination(n_j, n_c, n_q), Blows(n_q, n_c, n_t, n)
         self.blown = np.zeros(n * (n_q + 1) + n_q * n_q if coefficients.two else 0)
-        self.answers = doubles(self.blown)
-        self.mobilities = after(self.answers, n * n_q)
-        self.masses = after(self.mobilities, n)
+        x = Shelf(self.blown)
+        self.answers, self.mobilities, self.masses = x.take(n * n_q), x.take(n), x.take(n_q * n_q)
         self.looked_at = np.zeros(n_c if projected else 0, dtype=np.intp)
         self.repair = np.zeros(n_c + 2 * n + n_q * n_q + n * n_q + n * n if projected else 0)
         self.near = indices(self.looked_at)
-        self.gaps, self.entered = doubles(self.repair), after(doubles(self.repair), n_c)
-        self.joint_gaps = after(self.entered, n_c)
-        self.push = after(self.joint_gaps, n_j)
-        self.M = after(self.push, n)
-        self.Y = after(self.M, n_q * n_q)
-        self.S = after(self.Y, n * n_q)
+        y = Shelf(self.repair)
+        self.gaps, self.entered, self.joint_gaps, self.push = y.take(n_c), y.take(n_c), y.take(n_j), y.take(n)
+        self.M, self.Y, self.S = y.take(n_q * n_q), y.take(n * n_q), y.take(n * n)
         self.on_joints = np.zeros((n_c + n_j) * (n_q + 1) + n_j * n_j if self.turning else 0)
-        self.G = doubles(self.on_joints)
-        self.J_there = after(self.G, n_c * n_q)
-        self.G_t = after(self.J_there, n_j * n_q)
-        self.J_t_there = after(self.G_t, n_c)
-        self.S_there = after(self.J_t_there, n_j)
+        z = Shelf(self.on_joints)
+        self.G, self.J_there, self.G_t = z.take(n_c * n_q), z.take(n_j * n_q), z.take(n_c)
+        self.J_t_there, self.S_there = z.take(n_j), z.take(n_j * n_j)

@@ -1,0 +1,5 @@
+cdef class Shelf:
+    cdef Doubles rest
+
+cdef class IndexShelf:
+    cdef Indices rest
