@@ -236,12 +236,6 @@ class Recorder:
                 break
         return found
 
-    def impact_times(self) -> Array:
-        """Times of all impacts."""
-        return np.concatenate(
-            [lines[lines[:, KIND] == Kind.IMPACT, 0] for lines in self._events] or [np.zeros(0)]
-        )
-
     def log(self, end: float) -> Any:
         """The impact log of a span that ends at `end`, a record array of `trajectory.IMPACT_DTYPE`."""
         if self.taken == 0:

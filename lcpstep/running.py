@@ -157,9 +157,7 @@ class Run(Portions):
         """Whether steps and events go on that take the time on by next to nothing, or without sense."""
         look = self.standstill
         taken = self.done + self.recorder.taken
-        stands = look.reached(
-            taken, self.now, self.recorder.count_impacts, self.recorder.impact_times, self.kinetic_energy
-        )
+        stands = look.reached(taken, self.now, self.recorder.count_impacts, self.kinetic_energy)
         if look.crawls and not stands:
             q, v = (x.copy() for x in self.state)
             stands = not self.asked and bool(unrepeatable(self.scene, self.now, q, v))

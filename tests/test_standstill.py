@@ -9,7 +9,7 @@ import pytest
 from lagrangian import Contacts, Coulomb, LinearContacts, LinearSystem, Scene, System
 from lcpstep import EventDriven, Located, Moreau, Status, simulate
 from lcpstep.doubts.kinks import valley
-from lcpstep.doubts.standstill import LEAST, NEAR, STEPS, Standstill, limit
+from lcpstep.doubts.standstill import LEAST, STEPS, Standstill
 
 FALLS = LinearSystem(np.eye(2), force=[0.0, -9.81])
 
@@ -107,18 +107,12 @@ def at_peace():
     return 1.0
 
 
-def never():
-    return np.zeros(0)
-
-
 def test_impacts_may_be_as_many_as_they_like():
     """Light balls between heavy ones meet them a million times in a moment."""
     for impacts, stands in ((STEPS // 2, False), (STEPS // 200, True)):
         look = Standstill((0.0, 1.0), math.inf)
-        assert not look.reached(0, 0.5, lambda since: 0, never, at_peace)
-        assert (
-            look.reached(2 * STEPS, 0.5 + 0.5 * LEAST, lambda since, n=impacts: n, never, at_peace) is stands
-        )
+        assert not look.reached(0, 0.5, lambda since: 0, at_peace)
+        assert look.reached(2 * STEPS, 0.5 + 0.5 * LEAST, lambda since, n=impacts: n, at_peace) is stands
 
 
 def test_why_a_run_crawls_is_asked_once_in_many_steps():
@@ -126,60 +120,31 @@ def test_why_a_run_crawls_is_asked_once_in_many_steps():
     look = Standstill((0.0, 1.0), math.inf)
     asked = 0
     for steps in range(0, 10 * STEPS, 100):
-        assert not look.reached(steps, 1e-3 * steps / STEPS, lambda since: 0, never, at_peace)
+        assert not look.reached(steps, 1e-3 * steps / STEPS, lambda since: 0, at_peace)
         asked += look.crawls
     assert asked == 9
 
 
 def test_steps_of_the_size_asked_for_are_no_standstill():
     look, h = Standstill((0.0, 1.0), 1e-15), 1e-15
-    assert not any(
-        look.reached(k, k * h, lambda since: 0, never, at_peace) for k in range(0, 10 * STEPS, 1000)
-    )
+    assert not any(look.reached(k, k * h, lambda since: 0, at_peace) for k in range(0, 10 * STEPS, 1000))
 
 
-def walls_that_meet(t_end):
-    """At t = 2, a ball between them."""
+@pytest.mark.slow
+def test_a_ball_between_walls_that_close_in_ends_a_run_that_would_go_on_ever_faster():
+    """Ten million impacts were searched and kept, by `Moreau` 24 million, up to 4e-7 s before the walls meet."""
 
     def near(t, q, v, p, out):
         out[:] = 0.0
         out[0, :2], out[1, :2] = (0.2 * t, 0.2), (0.3 * t, 0.3)
 
     walls = LinearContacts([[1.0], [-1.0]], [0.0, 1.0], 1.0, motion=near)
-    return Scene(LinearSystem([[1.0]]), 0.5, -1.0, (0.0, t_end), walls)
-
-
-@pytest.mark.parametrize("t_end", [2.0, 3.0])
-@pytest.mark.parametrize(
-    "method", [Located(1e-3), *(pytest.param(method, marks=pytest.mark.slow) for method in (
-        EventDriven(), Located(1e-3, 4), Located(1e-3, "exact"), Located(1e-2, tolerance=1e-6),
-    ))],
-)  # fmt: skip
-def test_a_ball_between_walls_that_close_in_ends_a_run_that_would_go_on_ever_faster(method, t_end):
-    """Ten million impacts were searched and kept, by `Moreau` 24 million, up to 4e-7 s before the walls meet."""
-    m = simulate(walls_that_meet(t_end), method)
+    m = simulate(Scene(LinearSystem([[1.0]]), 0.5, -1.0, (0.0, 3.0), walls), Located(1e-3))
     assert m.status == Status.STEP_TOO_SMALL
     assert "as where bodies go to and fro between obstacles that close in, at t = " in m.message
     n = len(m.impacts)
-    assert n < 5e5
+    assert n < 2.1e6
     assert abs(m.v[-1, 0]) == pytest.approx(1.0 + 0.5 * n, abs=0.5)  # a wall adds twice its own speed
-
-
-@pytest.mark.slow
-def test_walls_that_would_meet_soon_after_the_end_are_met_as_often_as_there_is_time():
-    m = simulate(walls_that_meet(2.0 - 4e-6), Located(1e-3))
-    assert m.status == Status.DONE
-    assert len(m.impacts) > 800_000
-
-
-def test_the_limit_of_impacts_that_double_in_ever_shorter_times_is_found():
-    n = np.arange(1, 400_001)
-    for k in (0.5, 1.0, 3.0):
-        times = 1.0 - n ** (-1.0 / k)
-        left = 1.0 - times[-1]
-        assert limit(times) == pytest.approx(1.0 - NEAR * left, abs=1e-6 * left)
-    for steady in (n, np.log(n), np.sqrt(n)):
-        assert limit(steady) > 1e6
 
 
 def test_a_light_ball_between_heavy_ones_may_meet_them_a_million_times():
@@ -201,6 +166,4 @@ def test_many_short_steps_are_no_standstill_though_the_motion_gains_energy():
     for h, span in ((1e-7, 100.0), (math.inf, 1e6)):
         look = Standstill((0.0, span), h)
         times = ((k, k * min(h, 1e-4)) for k in range(0, 20 * STEPS * STEPS // 100, 500_000))
-        assert not any(
-            look.reached(k, t, lambda since: 0, never, lambda: 2.0 ** next(speed)) for k, t in times
-        )
+        assert not any(look.reached(k, t, lambda since: 0, lambda: 2.0 ** next(speed)) for k, t in times)

@@ -12,14 +12,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-import numpy as np
-from numpy.typing import NDArray
-
 STEPS = 20_000  # in a row
 # Steps and events of any kind: from so many on it is looked at, each time they have doubled
-IMPACTS = 200_000
-GROWTH = 1.25  # of the kinetic energy meanwhile
-NEAR = 0.01  # of the time to the limit of impacts: an end so near is beyond it
+IMPACTS = 1_000_000
+GROWTH, TOO_MANY = 1.25, 3e8  # of the kinetic energy meanwhile; how many more there would be
 PER_IMPACT = 100  # steps that the search for one may take
 # Of the span, or of what so many of the longest steps do: what they take the time on by at least, or crawl
 LEAST, CRAWL = 1e-6, 0.1
@@ -42,18 +38,13 @@ class Standstill:
         self.first, self.begin, self.energy = 0, -math.inf, 0.0  # of those of any kind
 
     def reached(
-        self,
-        steps: int,
-        now: float,
-        impacts: Callable[[float], int],
-        times: Callable[[], NDArray[np.float64]],
-        energy: Callable[[], float],
+        self, steps: int, now: float, impacts: Callable[[float], int], energy: Callable[[], float]
     ) -> bool:
         """Whether a run that has come to this time by so many steps and events stands still.
 
-        impacts : how many there were from a time on;  times : of all of them;  energy : the kinetic energy now
+        impacts : how many there were from a time on;  energy : the kinetic energy now
         """
-        if steps >= max(2 * self.first, IMPACTS) and self.ever_faster(steps, now, times(), energy()):
+        if steps >= max(2 * self.first, IMPACTS) and self.ever_faster(steps, now, impacts, energy()):
             return True
         onward, taken = now - self.since, steps - self.steps
         if taken < STEPS and onward < CRAWL * self.way:
@@ -64,25 +55,14 @@ class Standstill:
         self.steps, self.since = steps, now
         return self.crawls and onward < LEAST * self.way
 
-    def ever_faster(self, steps: int, now: float, times: NDArray[np.float64], energy: float) -> bool:
+    def ever_faster(self, steps: int, now: float, impacts: Callable[[float], int], energy: float) -> bool:
         """Whether bodies go to and fro ever faster, and hardly take the time on: not where steps are short anyhow."""
         onward, taken, fed = now - self.begin, steps - self.first, energy >= GROWTH * self.energy
-        short = onward < CRAWL * taken * self.h and PER_IMPACT * len(times) >= steps
-        self.crawls = fed and short and limit(times) <= self.end
+        many = taken * (self.end - now) > TOO_MANY * onward and onward < CRAWL * taken * self.h
+        self.crawls = fed and many and PER_IMPACT * impacts(self.begin) >= taken
         self.first, self.begin, self.energy = steps, now, energy
         self.words = f"{told(taken, onward)}, as where bodies go to and fro between obstacles that close in,"
         return self.crawls
-
-
-def limit(times: NDArray[np.float64]) -> float:
-    """The time before which there are infinitely many impacts, or more than ever end, if they go on as they did.
-
-    Each doubling of them takes the same part of the time of the one before where c / (limit - t)^k come until t.
-    """
-    quarter = len(times) // 4
-    a, b, c = times[quarter - 1], times[2 * quarter - 1], times[4 * quarter - 1]
-    last, before = c - b, b - a
-    return float(c + (1.0 - NEAR) * last**2 / (before - last)) if last < before else math.inf
 
 
 def told(taken: int, onward: float) -> str:
