@@ -183,3 +183,22 @@ def test_an_impact_of_a_general_system_is_found_to_the_smallest_tolerances(mass)
     m = simulate(scene, Moreau(0.01, tolerance=1e-7))
     assert m.status == Status.DONE, m.message
     assert m.q[-1, 0] == pytest.approx(simulate(scene, EventDriven()).q[-1, 0], abs=1.3e-7)
+
+
+def steep(t, q, v, p, out):
+    out[0, 0] = math.exp(p[0] * q[0])
+
+
+def falls_and_turns(t, q, v, p, out):
+    out[0] = -(0.5 * p[0] * v[0] ** 2 + 9.81) * math.exp(p[0] * q[0])
+
+
+@pytest.mark.parametrize(("steepness", "h"), [(3.0, 0.1), (6.0, 0.1), (10.0, 0.03)])
+def test_a_mass_that_grows_many_times_over_a_step_is_iterated_for(steepness, h):
+    """From where it was thrown down it strikes the floor, and loses what the law of impact takes."""
+    ball = System(1, steep, falls_and_turns)
+    scene = Scene(ball, 0.5, -5.0, (0.0, 2.0), LinearContacts(1.0, 0.0, 0.9), p=[steepness])
+    m = simulate(scene, Moreau(h))
+    assert m.status == Status.DONE, m.message
+    first = m.impacts[0]
+    assert first.after == pytest.approx(-0.9 * first.before, rel=1e-9)
