@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike
 
 from lagrangian.checks import Array, ReadOnly, vector
 
+PLAIN = {"b": bool, "i": int, "u": int, "f": float, "U": str}  # of Python's, by the kind of NumPy's
+
 
 class Values(np.ndarray[Any, np.dtype[np.float64]]):
     """The p of a scene that are the values of its parameters."""
@@ -34,10 +36,13 @@ def plain(parameters: Mapping[str, Any]) -> ReadOnly:
     """
     if not isinstance(parameters, Mapping):
         raise TypeError(f"parameters: expected names and values, got {parameters!r}")
-    numpys = np.generic, np.ndarray
-    return ReadOnly(
-        {name: x.item() if isinstance(x, numpys) and x.size == 1 else x for name, x in parameters.items()}
-    )
+    return ReadOnly({name: _plain(x) for name, x in parameters.items()})
+
+
+def _plain(x: Any) -> Any:
+    if not isinstance(x, np.generic | np.ndarray) or x.size != 1 or x.dtype.kind not in PLAIN:
+        return x
+    return PLAIN[x.dtype.kind](x.item())
 
 
 def numbers(parameters: Mapping[str, Any]) -> list[Any]:

@@ -88,8 +88,9 @@ def run_bifurcation(options: argparse.Namespace) -> int:
     make = making(options, scene, options.parameter)
     values = np.linspace(low, high, options.points)
     keeps_parts(options)
-    data = _diagram(options, make, values, method_of(options, scene), options.out / PARTS)
-    title = _title(options, scene, low, high)
+    method = method_of(options, scene, *(make(**{options.parameter: float(x)}) for x in (low, high)))
+    data = _diagram(options, make, values, method, options.out / PARTS)
+    title = _title(options, scene, method, low, high)
     if steps:
         figure = _compared(options, make, data, steps, title)
     else:
@@ -99,7 +100,7 @@ def run_bifurcation(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _title(options: argparse.Namespace, scene: Scene, low: float, high: float) -> str:
+def _title(options: argparse.Namespace, scene: Scene, method: Method, low: float, high: float) -> str:
     """Scene, window and method in words."""
     window = (
         f"{low:g} to {high:g} rpm"
@@ -108,7 +109,7 @@ def _title(options: argparse.Namespace, scene: Scene, low: float, high: float) -
     )
     return (
         f"{scene.name}, {window}: {options.start} start, {options.drop} periods dropped, {options.keep} shown\n"
-        f"{method_words(method_of(options, scene))}, section at phase {options.phase:g}"
+        f"{method_words(method)}, section at phase {options.phase:g}"
     )
 
 

@@ -169,16 +169,17 @@ def number(name: str, value: str, kind: type[float] = float) -> float:
         raise ValueError(f"--set: {name}: expected {expected}, got {value!r}") from None
 
 
-def step(options: argparse.Namespace, scene: Scene) -> float:
-    """The step that the options give, or one that suits the times of the scene [s]."""
+def step(options: argparse.Namespace, scene: Scene, *others: Scene) -> float:
+    """The step that the options give, or one that suits the span of a scene, and the periods of all [s]."""
     if options.h is not None:
         return float(options.h)
-    return min((scene.t_span[1] - scene.t_span[0]) / PER_SPAN, scene.period / PER_PERIOD)
+    period = min(x.period for x in (scene, *others))
+    return min((scene.t_span[1] - scene.t_span[0]) / PER_SPAN, period / PER_PERIOD)
 
 
-def moreau(options: argparse.Namespace, scene: Scene) -> Moreau:
+def moreau(options: argparse.Namespace, scene: Scene, *others: Scene) -> Moreau:
     """Time-stepping as the options say."""
-    return Moreau(h=step(options, scene), theta=options.theta, lcp=options.lcp)
+    return Moreau(h=step(options, scene, *others), theta=options.theta, lcp=options.lcp)
 
 
 def located(options: argparse.Namespace, scene: Scene) -> Located:

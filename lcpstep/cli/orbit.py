@@ -101,6 +101,9 @@ def run_orbit(options: argparse.Namespace) -> int:
         dataset.check_free(options.parameter, TAKEN)
     if options.range is not None and not options.range[0] < options.range[1]:
         raise ValueError("--range: expected LOW < HIGH, got {:g} {:g}".format(*options.range))
+    if options.range is not None and options.method == "moreau":
+        make = making(options, scene, options.parameter)
+        method = method_of(options, scene, *(make(**{options.parameter: x}) for x in options.range))
     if options.mode is not None or options.event is not None:
         return _run_returns(options, scene, method)
     names = files(options, "branch") if options.range is not None else None

@@ -53,9 +53,9 @@ def study_arguments(p: argparse.ArgumentParser) -> None:
     p.add_argument("--overwrite", action="store_true", help="write over files of an earlier run")
 
 
-def method_of(options: argparse.Namespace, scene: Any) -> Method:
-    """The method that the options name."""
-    return moreau(options, scene) if options.method == "moreau" else event_driven(options)
+def method_of(options: argparse.Namespace, scene: Any, *others: Any) -> Method:
+    """The method that the options name; others are what the scene becomes as its parameter varies."""
+    return moreau(options, scene, *others) if options.method == "moreau" else event_driven(options)
 
 
 def _refuse_what_does_not_apply(options: argparse.Namespace) -> None:

@@ -91,9 +91,8 @@ def _gain_at_impacts(run: Trajectory, m: Model, h: float) -> tuple[float, float]
         return 0.0, 0.0
     speed = np.sum(run.v[k + 1] ** 2, axis=1) - np.sum(run.v[k] ** 2, axis=1)
     gained, work, _ = _between(run, m, h, k[np.argsort(speed)[-SUDDEN:]], True)
-    fastest = run.v[np.argmax(np.sum(run.v**2, axis=1))]
-    M = run.scene.system.M if isinstance(run.scene.system, LinearSystem) else run.scene.system.mass
-    return gained, 0.5 * float(fastest @ (M @ fastest)) + work
+    M: Any = run.scene.system.M if isinstance(run.scene.system, LinearSystem) else run.scene.system.mass
+    return gained, 0.5 * float(np.max(np.sum(run.v * (M @ run.v.T).T, axis=1))) + work
 
 
 def _between(run: Trajectory, m: Model, h: float, k: Any, struck: bool) -> tuple[float, float, float]:

@@ -103,7 +103,7 @@ class EventDriven:
                 from lcpstep.events.flight.run import ClosedForm
 
                 o = oscillator_of(m)
-                if o is not None and not is_lost(o, m, scene.t_span[1] - scene.t_span[0]):
+                if o is not None and not is_lost(o, m, *scene.t_span):
                     return ClosedForm(self, scene, kept, m, o).finish(progress)
             from lcpstep.events.parabolas.run import ParabolicRun, is_constant
 

@@ -1,6 +1,7 @@
 """The commands attractor, bifurcation, basin and orbit: files, numbers, and what wrong arguments get."""
 
 import json
+import math
 
 import pytest
 
@@ -185,3 +186,28 @@ def test_wrong_arguments_are_named(capsys, tmp_path, arguments, said):
     assert status == USAGE
     assert said in err
     assert not (tmp_path / "new").exists()
+
+
+def test_a_diagram_without_h_takes_steps_that_suit_every_period_in_it(monkeypatch, capsys, tmp_path):
+    from lcpstep.cli import studies
+
+    found = []
+    made = studies.moreau
+    monkeypatch.setattr(studies, "moreau", lambda *given: found.append(made(*given)) or found[-1])
+    words = [
+        "bifurcation",
+        "impact-oscillator",
+        "--parameter",
+        "omega",
+        "--range",
+        "2",
+        "100",
+        "--points",
+        "2",
+        "--drop",
+        "1",
+        "--keep",
+        "1",
+    ]
+    run(capsys, *words, "--method", "moreau", "--out", tmp_path)
+    assert found[-1].h == pytest.approx(2.0 * math.pi / 100.0 / 500)

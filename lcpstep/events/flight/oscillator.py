@@ -70,10 +70,13 @@ def oscillator(
 
 
 @cython.ccall
-def is_lost(o: Oscillator, m: Model, span: float) -> bool:
-    """Whether what a force moves in the span is lost in the steady oscillation: it is slow, the spring not strong."""
-    way = hypot(m.cosine[0], m.sine[0]) / m.M[0] * span * span
-    return hypot(o.X, o.Y) * NEAR_RESONANCE > way
+def is_lost(o: Oscillator, m: Model, start: float, end: float) -> bool:
+    """Whether what a force moves in the span is lost in the steady oscillation: it is slow, the spring not strong.
+
+    Late phases are rounded, the oscillation with them.
+    """
+    way = hypot(m.cosine[0], m.sine[0]) / m.M[0] * (end - start) * (end - start)
+    return hypot(o.X, o.Y) * NEAR_RESONANCE * max(1.0, o.Omega * max(abs(start), abs(end))) > way
 
 
 def envelope(delta: float, w2: float, x: float, dx: float) -> float:
