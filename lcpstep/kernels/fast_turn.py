@@ -16,6 +16,7 @@ from lcpstep.kernels.dynamics import gap_rates, gaps, mass, total_force
 from lcpstep.kernels.model import Model
 from lcpstep.kernels.vectors import size_of_product
 from lcpstep.pointers import Doubles, abs, after, max, min, whole
+from lcpstep.shelf import Shelf
 
 NEAR = 1.0 / 64.0  # of a step: of the differences
 FASTER = 10.0  # than a step
@@ -42,16 +43,13 @@ class Looks:
         self.m, self.looks, self.golden, self.count = m, looks, golden, len(t)
         work = np.zeros((2 * looks + 4) * n_c + n_q * (n_c + n_q + 2))
         self.kept = t, q, v, work
-        self.t, self.q, self.v, self.g = doubles(t), doubles(q), doubles(v), doubles(work)
+        self.t, self.q, self.v = doubles(t), doubles(q), doubles(v)
         self.mean = (t[-1] - t[0]) / steps
-        self.bent = after(self.g, looks * n_c)
-        self.largest = after(self.bent, looks * n_c)
-        self.start = after(self.largest, n_c)
-        self.end = after(self.start, n_c)
-        self.other = after(self.end, n_c)
-        self.x = after(self.other, n_c)
-        self.G = after(self.x, n_q)
-        self.force = after(self.G, n_q * n_c)
+        x = Shelf(work)
+        self.g, self.bent, self.largest = x.take(looks * n_c), x.take(looks * n_c), x.take(n_c)
+        self.start, self.end, self.other = x.take(n_c), x.take(n_c), x.take(n_c)
+        self.x, self.G = x.take(n_q), x.take(n_q * n_c)
+        self.force = x.rest
         self.k, self.share, self.h = 0, 0.0, 0.0
 
 

@@ -18,7 +18,8 @@ from lcpstep.kernels.coefficients import Coefficients
 from lcpstep.kernels.dop853 import ALL
 from lcpstep.kernels.rungekutta import RungeKutta
 from lcpstep.kernels.status import NOT_FINITE
-from lcpstep.pointers import Doubles, Indices, after, indices_after, max
+from lcpstep.pointers import after, max
+from lcpstep.shelf import IndexShelf, Shelf
 
 # Of the interval looked at: stretches of motion this short take no time, nor do roundings of it
 NO_TIME = 2.0**-50
@@ -103,9 +104,9 @@ class Rubbing(RungeKutta):
         self.looks, self.given = np.zeros(GUARDS * n_c * (SAMPLES + 2)), np.array(tangential, dtype=float)
         self.tangential, self.armed = doubles(self.given), indices(self.arms)
         self.share_rows()
-        self.place_numbers(doubles(self.table))
-        self.place_guards(doubles(self.looks))
-        self.place_marks(indices(self.marks))
+        self.place_numbers(Shelf(self.table))
+        self.place_guards(Shelf(self.looks))
+        self.place_marks(IndexShelf(self.marks))
         self.paced, self.loose = 0, 0
         self.bracket, self.hopping = self.scan.bracket, False
         self.watch, self.since_look = None, ENTERED
@@ -127,28 +128,26 @@ class Rubbing(RungeKutta):
         self.tried, self.loaded = self.rows.tried, self.rows.loaded
         self.may_stick, self.touches, self.parting = self.rows.may_stick, self.rows.touches, self.rows.parting
 
-    def place_numbers(self, x: Doubles) -> None:
-        """Numbers of states, rows and contacts, from x on."""
-        n, r, n_c = self.n_q, self.n_r, self.n_c
-        self.dy, self.seen, self.paces = x, after(x, 2 * n), after(x, 4 * n)
-        x = after(self.paces, r + 1)
-        self.counted, self.total, self.loads = x, after(x, r), after(x, 2 * r)
-        self.unsure, self.effects = after(self.loads, ALL * r), after(self.loads, (ALL + 1) * r)
-        x = after(self.effects, (n + r) * (n + r))
-        self.new_direction, self.slip, self.lands = x, after(x, n_c), after(x, 2 * n_c)
-        self.height, self.rise, self.bend = after(x, 3 * n_c), after(x, 4 * n_c), after(x, 5 * n_c)
-        self.speed, self.jumped, self.stray = after(x, 6 * n_c), after(x, 7 * n_c), after(x, 8 * n_c)
+    def place_numbers(self, x: Shelf) -> None:
+        """Numbers of states, rows and contacts."""
+        n, r, c = self.n_q, self.n_r, self.n_c
+        self.dy, self.seen, self.paces = x.take(2 * n), x.take(2 * n), x.take(r + 1)
+        self.counted, self.total, self.loads, self.unsure = x.take(r), x.take(r), x.take(ALL * r), x.take(r)
+        self.effects = x.take((n + r) * (n + r))
+        self.new_direction, self.slip, self.lands, self.height = x.take(c), x.take(c), x.take(c), x.take(c)
+        self.rise, self.bend, self.speed, self.jumped = x.take(c), x.take(c), x.take(c), x.take(c)
+        self.stray = x.take(c)
 
-    def place_guards(self, x: Doubles) -> None:
-        """Numbers of guards, from x on."""
+    def place_guards(self, x: Shelf) -> None:
+        """Numbers of guards."""
         n = GUARDS * self.n_c
-        self.value, self.band, self.samples = x, after(x, n), after(x, 2 * n)
+        self.value, self.band, self.samples = x.take(n), x.take(n), x.take(n * SAMPLES)
 
-    def place_marks(self, x: Indices) -> None:
-        """Whole numbers per contact, from x on."""
+    def place_marks(self, x: IndexShelf) -> None:
+        """Whole numbers per contact."""
         n = self.n_c
-        self.new_mode, self.new_loaded, self.hops = x, indices_after(x, n), indices_after(x, 2 * n)
-        self.carried, self.leader = indices_after(x, 3 * n), indices_after(x, 4 * n)
+        self.new_mode, self.new_loaded, self.hops = x.take(n), x.take(n), x.take(n)
+        self.carried, self.leader = x.take(n), x.take(n)
 
     def proceed(self) -> int:
         """Go on up to the first event, no further than a step; a status. Every way to step has its own."""

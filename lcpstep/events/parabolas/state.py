@@ -16,6 +16,7 @@ from lcpstep.kernels.roundings import NOISE
 from lcpstep.kernels.together import gap_rounding
 from lcpstep.kernels.vectors import add, copy
 from lcpstep.pointers import abs, after, inf, max
+from lcpstep.shelf import Shelf
 
 
 class Mechanism(Contacts):
@@ -44,10 +45,8 @@ class Mechanism(Contacts):
         self.state, self.numbers = np.zeros(2 * n), np.zeros(2 * n + 2 * n_c)
         self.q0 = doubles(self.state)
         self.v0 = after(self.q0, n)
-        self.q = doubles(self.numbers)
-        self.v = after(self.q, n)
-        self.lift = after(self.v, n)
-        self.synchronous = after(self.lift, n_c)
+        x = Shelf(self.numbers)
+        self.q, self.v, self.lift, self.synchronous = x.take(n), x.take(n), x.take(n_c), x.take(n_c)
 
     def start(self, q: Any, v: Any) -> None:
         """Begin with the state q, v (n_q,)."""
