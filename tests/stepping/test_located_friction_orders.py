@@ -277,3 +277,29 @@ def test_between_its_steps_a_body_on_a_shaken_floor_stays_there(method):
     np.testing.assert_allclose(q[:, 1], SHAKEN * np.sin(t), atol=1e-12)
     np.testing.assert_allclose(v[:, 1], SHAKEN * np.cos(t), atol=1e-12)
     np.testing.assert_array_equal(simulate(scene, method, keep=t).q, q)
+
+
+def shaken(t, q, v, p, out):
+    for i in range(3):
+        out[i, 0], out[i, 1] = p[0] * math.sin(p[1] * t), p[0] * p[1] * math.cos(p[1] * t)
+        out[i, 2] = -p[0] * p[1] ** 2 * math.sin(p[1] * t)
+
+
+def test_what_a_shaken_slope_lets_go_is_gone_though_its_acceleration_begins_by_rounding_below_zero():
+    """Three blocks in a row of springs; a step of this size let one go and took it back at one time, without end."""
+    m, long = np.array([0.414, 1.6, 0.865]), math.hypot(1.0, 0.26)
+    G, T, K, weight = np.zeros((3, 6)), np.zeros((3, 6)), np.zeros((6, 6)), np.zeros(6)
+    for i in range(3):
+        G[i, 2 * i : 2 * i + 2], T[i, 2 * i : 2 * i + 2] = (
+            (-0.26 / long, 1.0 / long),
+            (1.0 / long, 0.26 / long),
+        )
+    K[::2, ::2] = 200.0 * np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
+    weight[1::2] = -9.81 * m
+    blocks = LinearSystem(np.diag(np.repeat(m, 2)), K=K, force=weight)
+    slope = LinearContacts(G, 0.0, 0.0, motion=shaken, friction=Coulomb(0.3, T))
+    scene = Scene(blocks, np.zeros(6), np.zeros(6), (0.0, 0.2), slope, p=[0.069, 11.66])
+    run, reference = simulate(scene, Located(0.001438)), simulate(scene, EventDriven())
+    assert run.status is Status.DONE, run.message
+    assert np.array_equal(run.impacts.kind, reference.impacts.kind)
+    np.testing.assert_allclose(run.q[-1], reference.q[-1], rtol=0, atol=1e-5)

@@ -35,14 +35,14 @@ def rises(s: Strides, g: int) -> bool:
     """Whether guard g is a gap let go that rises at the end of the step just made, whose rates are known.
 
     A step of order two, off by the cube of its size, may lead it below its surface all the same. What has no speed
-    but that of rounding rises by its acceleration.
+    but that of rounding rises by its acceleration, at first or, where that is zero but for rounding, further on.
     """
     c = g // GUARDS
     if s.armed[g] == 1 or g % GUARDS > 0 or s.mode[c] != OPEN:
         return False
     i, none = s.n_j + c, s.terms[c]
     u = velocity_of(s.rows, i, after(s.y_new, s.n_q))
-    return u > (-none if s.begin_bend[c] > 0.0 else none)
+    return u > (-none if max(s.begin_bend[c], s.end_bend[c]) > 0.0 else none)
 
 
 def widen_until_decided(s: Strides, g: int, h: float) -> None:
