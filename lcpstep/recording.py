@@ -176,15 +176,12 @@ class Recorder:
         self.record.write_to(self._columns)
 
     def _rows(self, n: int) -> tuple[Array, ...]:
-        """Arrays for so many rows; of what is zero in most of them the system has memory ready, untouched.
-
-        What is written in all of them lies in one piece, for which the system clears fewer and larger pages.
-        """
+        """Arrays for so many rows; of what is zero in most of them the system has memory ready, untouched."""
         n_q, n_c, shape = self.record.n_q, self.record.n_c, self._dense_shape
-        whole, end = np.empty((1 + 2 * n_q) * n), (1 + n_q) * n
-        q, v = whole[n:end].reshape(n, n_q), whole[end:].reshape(n, n_q)
         dense = np.empty(0 if shape is None else (n, *shape))
-        return whole[:n], np.zeros(n), np.zeros(n), q, v, np.zeros((n, n_c)), dense
+        return (
+            np.empty(n), np.zeros(n), np.zeros(n), np.empty((n, n_q)), np.empty((n, n_q)), np.zeros((n, n_c)), dense
+        )  # fmt: skip
 
     def take(self) -> None:
         """Take over the events that kernels have written, and see to it that they can go on."""

@@ -22,6 +22,7 @@ import numpy as np
 
 from lagrangian import LinearContacts, LinearJoints, LinearSystem, System
 from lcpstep.corner_times import corners_before
+from lcpstep.doubts.depth import largest_energy
 from lcpstep.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -91,8 +92,7 @@ def _gain_at_impacts(run: Trajectory, m: Model, h: float) -> tuple[float, float]
         return 0.0, 0.0
     speed = np.sum(run.v[k + 1] ** 2, axis=1) - np.sum(run.v[k] ** 2, axis=1)
     gained, work, _ = _between(run, m, h, k[np.argsort(speed)[-SUDDEN:]], True)
-    M: Any = run.scene.system.M if isinstance(run.scene.system, LinearSystem) else run.scene.system.mass
-    return gained, 0.5 * float(np.max(np.sum(run.v * (M @ run.v.T).T, axis=1))) + work
+    return gained, largest_energy(run) + work
 
 
 def _between(run: Trajectory, m: Model, h: float, k: Any, struck: bool) -> tuple[float, float, float]:

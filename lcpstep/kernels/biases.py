@@ -66,23 +66,31 @@ def difference_step(
 
     Gaps may bend at any scale. A third difference too large, or a value at t too far off, asks for a shorter step, in
     proportion to its third root, unless the last one has shown that this does not help: the curvature jumps nearby.
-    One that falls by less than such a jump would, or not at all, was of steps too long to see anything of the gap.
+    Where it does not fall at all steps may have been too long to see anything of the gap: shorter ones count if they
+    find it smooth; else it is noise of the callbacks.
     They see nothing of what is narrower than they are apart, but where its ends are those of the interval.
     """
     speed = 1.0
     for i in range(m.n_q):
         speed = max(speed, abs(v[i]))
     d, before, shorter, longer = min(DIFFERENCE / speed, (high - low) / (2.0 * REACH)), inf, 1.0, 1.0
+    in_noise = 0.0  # the first step that does not help
     for _ in range(SHORTENINGS):
         d = kept_by_clock(t, d)
         bent = differences(m, t, middle(t, low, high, d), q, v, shifted, G, rate, even, d)
-        helped = bent > LOST or not before * shorter < bent < before * longer
-        if not bent > BENT or not helped:
+        if not bent > BENT:
             return d
+        if not bent > LOST and bent > before * shorter:
+            falls = bent < before * longer
+            if falls and in_noise == 0.0:
+                return d
+            in_noise = d if in_noise == 0.0 else in_noise
+            if falls:
+                break
         change = max(pow(SMOOTH / bent, 1.0 / 3.0), DIFFERENCE)
         before, shorter, longer = inf if bent > LOST else bent, change * sqrt(change), sqrt(change)
         d *= change
-    d = kept_by_clock(t, d)
+    d = kept_by_clock(t, d) if in_noise == 0.0 else in_noise
     differences(m, t, middle(t, low, high, d), q, v, shifted, G, rate, even, d)
     return d
 

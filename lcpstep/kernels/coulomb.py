@@ -53,7 +53,7 @@ class ContactProblem:
     again    with friction: the problem is the last one, hardly changed, and the impulses of that are a guess
     W, b, z  of the problem with friction;  fast : (n_c,)  sliding velocities that another problem has slower
     slow, made, sum    of impacts in turn, see `energetic`: speeds below which contacts have no restitution, and what
-                 forces have made of their approaches, (n_c,) each; impulses of those before (m,)
+                 forces have made of their approaches, (n_c,) each; impulses of those before (2 n_c,)
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class ContactProblem:
         self.space = np.zeros(unknowns * unknowns + 2 * unknowns + 5 * n_c)
         x = Shelf(self.space)
         self.W, self.b, self.z = x.take(unknowns * unknowns), x.take(unknowns), x.take(unknowns)
-        self.slow, self.fast, self.made, self.sum = x.take(n_c), x.take(n_c), x.take(n_c), x.take(unknowns)
+        self.slow, self.fast, self.made, self.sum = x.take(n_c), x.take(n_c), x.take(n_c), x.take(2 * n_c)
         self.lists = np.zeros(n, dtype=np.intp), np.zeros(n_c, dtype=np.intp)
         self.ids, self.carrier = indices(self.lists[0]), indices(self.lists[1])
         largest = unknowns if unknowns > n_c else n_c

@@ -53,3 +53,30 @@ def test_a_conveyor_of_kilohertz_is_followed_without_its_accelerations(mu, stiff
     assert known.status is m.status is Status.DONE
     assert m.counts.steps < 3 * known.counts.steps
     np.testing.assert_allclose(m.q[-1], known.q[-1], rtol=0, atol=1e-10)
+
+
+def above_a_parabola(t, q, v, p, out):
+    out[0] = q[1] - q[0] * q[0]
+
+
+def coarse(t, q, v, p, out):
+    out[0, 0], out[0, 1] = -np.float32(2.0 * q[0]), 1.0
+
+
+def fine(t, q, v, p, out):
+    out[0, 0], out[0, 1] = -2.0 * q[0], 1.0
+
+
+def test_a_jacobian_of_few_digits_is_no_gap_that_bends():
+    """Differences see its noise at every step, and more of it at shorter ones."""
+    body = LinearSystem(np.eye(2), force=[0.0, -9.81])
+    m, known = (
+        simulate(
+            Scene(body, [0.5, 0.25], [0.5, 0.5], (0.0, 0.02), Contacts(1, above_a_parabola, jacobian)),
+            EventDriven(1e-8, 1e-8),
+        )
+        for jacobian in (coarse, fine)
+    )
+    assert m.status is Status.DONE
+    assert m.counts.steps < 1000
+    np.testing.assert_allclose(m.q[-1], known.q[-1], rtol=0, atol=1e-6)

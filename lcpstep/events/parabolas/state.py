@@ -51,7 +51,8 @@ class Mechanism(Contacts):
     def start(self, q: Any, v: Any) -> None:
         """Begin with the state q, v (n_q,)."""
         self.state[: self.n_q], self.state[self.n_q :] = q, v
-        copy(self.q, self.q0, 2 * self.n_q)
+        copy(self.q, self.q0, self.n_q)
+        copy(self.v, self.v0, self.n_q)
 
     def noise(self, c: int) -> float:
         """Rounding of the gap velocity of a contact, that of the earlier impacts of the same instant included.

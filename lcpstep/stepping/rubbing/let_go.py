@@ -13,7 +13,7 @@ from lcpstep.events.codes import OPEN, SLIDES
 from lcpstep.events.contacts.state import GUARDS
 from lcpstep.events.rows.contacts import rubs
 from lcpstep.events.rows.equations import velocity_of
-from lcpstep.pointers import abs, after, max
+from lcpstep.pointers import abs, after
 from lcpstep.stepping.rubbing.strides import Strides
 
 
@@ -42,7 +42,8 @@ def rises(s: Strides, g: int) -> bool:
         return False
     i, none = s.n_j + c, s.terms[c]
     u = velocity_of(s.rows, i, after(s.y_new, s.n_q))
-    return u > (-none if max(s.begin_bend[c], s.end_bend[c]) > 0.0 else none)
+    later = s.end_bend[c] > 0.0 and abs(s.begin_bend[c]) * s.length <= none
+    return u > (-none if later or s.begin_bend[c] > 0.0 else none)
 
 
 def widen_until_decided(s: Strides, g: int, h: float) -> None:

@@ -70,7 +70,7 @@ class Strides(Smooth):
         self.size_q = self.size_v = 0.0
         r, n, g = self.n_r, self.n, GUARDS * self.n_c
         self.arrival = after(self.K, ARRIVAL * self.n)
-        self.ends = np.zeros(5 * self.n_r + 8 * g + 2 * self.n_c + 4 * self.n)
+        self.ends = np.zeros(5 * self.n_r + 8 * g + 2 * self.n_c + 3 * self.n + self.n_q)
         x = Shelf(self.ends)
         self.leaving, self.arriving, self.middle, self.push = x.take(r), x.take(r), x.take(r), x.take(r)
         self.begin_value, self.begin_slope, self.end_value = x.take(g), x.take(g), x.take(g)

@@ -6,7 +6,8 @@ The step's velocity v solves, with q(v) = q_i + h [theta v + (1-theta) v_i],
     M_theta = theta M(t+h, q(v)) + (1-theta) M(t, q_i)
 
 and is linearised as R(v_k) + A (v - v_k): v_free = v_k - A^-1 R(v_k), A ~ dR/dv. For constant M, C, K this is
-the linear theta-method and one iteration is exact. A is made at the start of a step, and again where that is slow.
+the linear theta-method and one iteration is exact. A is made at the start of a step, and again, with the change of M in
+it, where that is slow.
 Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), section 10.1.
 """
 
@@ -83,7 +84,7 @@ def forces(m: Model, plan: Plan, s: State, t_next: float, v: Doubles) -> None:
 
 
 def differenced_jacobian(m: Model, plan: Plan, s: State, t_next: float) -> None:
-    """A = M_theta - h theta df/dv along q(v), the change of M left out.
+    """A = M_theta - h theta df/dv along q(v), the change of M aside.
 
     M as it is, for after an impact differences of M (v - v_i) are rounding of the jump, however short the step.
     """
@@ -114,7 +115,7 @@ def add_change_of_mass(m: Model, plan: Plan, s: State, t_next: float) -> None:
 
 
 def given_jacobian(m: Model, plan: Plan, s: State, t_next: float) -> None:
-    """A = M_theta - h theta (df/dv + h theta df/dq), the change of M left out."""
+    """A = M_theta - h theta (df/dv + h theta df/dq), the change of M aside."""
     n, ht = s.n_q, plan.h * plan.theta
     copy(s.A, s.M, n * n)
     m.force_v.fill(t_next, s.try_q, s.next_v, s.J)

@@ -224,7 +224,7 @@ class Rows:
         x = Shelf(self.blown)
         self.answers, self.mobilities, self.masses = x.take(n * n_q), x.take(n), x.take(n_q * n_q)
         self.looked_at = np.zeros(n_c if projected else 0, dtype=np.intp)
-        self.repair = np.zeros(n_c + 2 * n + n_q * n_q + n * n_q + n * n if projected else 0)
+        self.repair = np.zeros(2 * n_c + n_j + n + n_q * n_q + n * n_q + n * n if projected else 0)
         self.near = indices(self.looked_at)
         y = Shelf(self.repair)
         self.gaps, self.entered, self.joint_gaps, self.push = y.take(n_c), y.take(n_c), y.take(n_j), y.take(n)
