@@ -6,8 +6,8 @@ The step's velocity v solves, with q(v) = q_i + h [theta v + (1-theta) v_i],
     M_theta = theta M(t+h, q(v)) + (1-theta) M(t, q_i)
 
 and is linearised as R(v_k) + A (v - v_k): v_free = v_k - A^-1 R(v_k), A ~ dR/dv. For constant M, C, K this is
-the linear theta-method and one iteration is exact. A is made at the start of a step, and again, with the change of M in
-it, where that is slow.
+the linear theta-method and one iteration is exact. A is made at the start of a step, and again, with the change of
+M in it, where that is slow.
 Source: V. Acary, B. Brogliato, Numerical Methods for Nonsmooth Dynamical Systems (Springer 2008), section 10.1.
 """
 
