@@ -1,4 +1,4 @@
-"""The numbers p that functions are handed, from the named parameters of a scene."""
+"""The numbers p that functions are handed, from the named parameters of a scene; a scene on one line, with these."""
 
 from __future__ import annotations
 

@@ -68,16 +68,17 @@ def run_basin(options: argparse.Namespace) -> int:
     n_q, n_v = (checks.count("--grid", n) for n in options.grid)
     names = files(options, "basins")
     keeps_parts(options)
+    method = method_of(options, scene)
     with work_bar("basins"):
         data = basins(
             scene, [position[0], velocity[0]], [position[1], velocity[1]], (n_q, n_v),
-            method=method_of(options, scene), phase=options.phase, longest=options.longest, sample=options.sample,
+            method=method, phase=options.phase, longest=options.longest, sample=options.sample,
             seed=options.seed, jobs=options.jobs, out=options.out / PARTS,
         )  # fmt: skip
     finish(
         options,
         data,
-        pictures.basins(data, title_of(scene, f"{n_q} x {n_v} cells", method_of(options, scene))),
+        pictures.basins(data, title_of(scene, f"{n_q} x {n_v} cells", method)),
         names,
     )
     for name, share, error in zip(*(data[k].values for k in ("name", "share", "share_error")), strict=True):

@@ -88,7 +88,7 @@ def run_bifurcation(options: argparse.Namespace) -> int:
     make = making(options, scene, options.parameter)
     values = np.linspace(low, high, options.points)
     keeps_parts(options)
-    method = method_of(options, scene, *(make(**{options.parameter: float(x)}) for x in (low, high)))
+    method = method_of(options, scene, (make(**{options.parameter: float(x)}) for x in (low, high)))
     data = _diagram(options, make, values, method, options.out / PARTS)
     title = _title(options, scene, method, low, high)
     if steps:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -169,17 +169,20 @@ def number(name: str, value: str, kind: type[float] = float) -> float:
         raise ValueError(f"--set: {name}: expected {expected}, got {value!r}") from None
 
 
-def step(options: argparse.Namespace, scene: Scene, *others: Scene) -> float:
-    """The step that the options give, or one that suits the span of a scene, and the periods of all [s]."""
+def step(options: argparse.Namespace, scene: Scene, others: Iterable[Scene] = ()) -> float:
+    """The step that the options give, or one that suits the span of a scene, and the periods of all [s].
+
+    others : what the scene becomes as its parameter varies, made where that is asked for
+    """
     if options.h is not None:
         return float(options.h)
-    period = min(x.period for x in (scene, *others))
+    period = min([scene.period, *(x.period for x in others)])
     return min((scene.t_span[1] - scene.t_span[0]) / PER_SPAN, period / PER_PERIOD)
 
 
-def moreau(options: argparse.Namespace, scene: Scene, *others: Scene) -> Moreau:
+def moreau(options: argparse.Namespace, scene: Scene, others: Iterable[Scene] = ()) -> Moreau:
     """Time-stepping as the options say."""
-    return Moreau(h=step(options, scene, *others), theta=options.theta, lcp=options.lcp)
+    return Moreau(h=step(options, scene, others), theta=options.theta, lcp=options.lcp)
 
 
 def located(options: argparse.Namespace, scene: Scene) -> Located:

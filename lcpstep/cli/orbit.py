@@ -94,16 +94,14 @@ def run_orbit(options: argparse.Namespace) -> int:
         raise ValueError("--contact, --cyclic: they belong to --event")
     if options.periods is not None:
         checks.count("--periods", options.periods)
-    scene = study_scene(options)
-    method = method_of(options, scene)
-    if options.range is not None:
+    scene, ends = study_scene(options), options.range or ()
+    if ends:
         vary(options)
         dataset.check_free(options.parameter, TAKEN)
-    if options.range is not None and not options.range[0] < options.range[1]:
-        raise ValueError("--range: expected LOW < HIGH, got {:g} {:g}".format(*options.range))
-    if options.range is not None and options.method == "moreau":
-        make = making(options, scene, options.parameter)
-        method = method_of(options, scene, *(make(**{options.parameter: x}) for x in options.range))
+        if not ends[0] < ends[1]:
+            raise ValueError("--range: expected LOW < HIGH, got {:g} {:g}".format(*ends))
+    others = (making(options, scene, options.parameter)(**{options.parameter: x}) for x in ends)
+    method = method_of(options, scene, others)
     if options.mode is not None or options.event is not None:
         return _run_returns(options, scene, method)
     names = files(options, "branch") if options.range is not None else None

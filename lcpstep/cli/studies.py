@@ -6,7 +6,7 @@ import argparse
 import shutil
 import sys
 import time
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
@@ -53,9 +53,9 @@ def study_arguments(p: argparse.ArgumentParser) -> None:
     p.add_argument("--overwrite", action="store_true", help="write over files of an earlier run")
 
 
-def method_of(options: argparse.Namespace, scene: Any, *others: Any) -> Method:
-    """The method that the options name; others are what the scene becomes as its parameter varies."""
-    return moreau(options, scene, *others) if options.method == "moreau" else event_driven(options)
+def method_of(options: argparse.Namespace, scene: Any, others: Iterable[Any] = ()) -> Method:
+    """The method that the options name; others as for `step`."""
+    return moreau(options, scene, others) if options.method == "moreau" else event_driven(options)
 
 
 def _refuse_what_does_not_apply(options: argparse.Namespace) -> None:

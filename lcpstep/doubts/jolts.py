@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 
 from lagrangian import LinearContacts, Scene
 from lcpstep.corner_times import repeated
-from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.roundings import MARGIN
 from lcpstep.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 KNOWN: WeakKeyDictionary[Scene, Array] = WeakKeyDictionary()  # a scene's functions stay what they are
-ROUNDED = 8.0 * RESOLUTION  # of a time: what rests of a sum of periods
 
 
 def jolted(run: Trajectory) -> str:
@@ -35,7 +34,7 @@ def jolted(run: Trajectory) -> str:
     if not len(known):
         return ""
     begin, end = scene.t_span[0], float(run.t[-1])
-    rounding = ROUNDED * max(abs(begin), abs(end))  # not at the ends
+    rounding = MARGIN * max(abs(begin), abs(end))  # not at the ends
     times = repeated(known, scene.period, begin + rounding, end - rounding, 1)
     if not len(times) or _by_flights(run):
         return ""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from lcpstep.kernels.roundings import RESOLUTION
+from lcpstep.kernels.roundings import MARGIN, RESOLUTION
 from lcpstep.stepping.steps import WHOLE
 
 # Why the loop returned, besides what `kernels.status` has, DONE at the end of the span: for what Python makes
@@ -27,7 +27,7 @@ def sizes(span: tuple[float, float], h: float) -> tuple[float, int, int, int]:
     start, end = span
     coarse = max(1, math.ceil((end - start) / h - WHOLE))
     h_max = (end - start) / coarse
-    least = 8.0 * RESOLUTION * max(abs(start), abs(end))
+    least = MARGIN * max(abs(start), abs(end))
     finest = min(LEVELS, 62 - coarse.bit_length())
     if least > 0.0:
         finest = max(0, min(finest, math.floor(math.log2(h_max / least)) - 1))
